@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,19 @@ class Estimate:
     def values(self) -> dict[str, float]:
         """The estimated values by name, in their units."""
         return dict(zip(self.space.names, self.space.decode(self.q).tolist(), strict=True))
+
+    def about(self, asked: int) -> Estimate:
+        """Returns the estimate of the first parameters, the others fixed at their estimates."""
+        p, every, keep = self.predictor, self.values, np.arange(asked)
+        names = self.space.names[:asked]
+        held = {n: v for n, v in every.items() if n not in names}
+        known = replace(p, names=names, fixed={**p.fixed, **held})
+        space = Priors(self.space, self.q, np.zeros_like(self.q)).taken(keep).space
+        priors = {n: std for n, std in self.options.priors.items() if n in names}
+        return replace(
+            self, predictor=known, space=space, start=self.start[keep], q=self.q[keep],
+            options=replace(self.options, priors=priors),
+        )  # fmt: skip
 
 
 @one_blas_thread()

@@ -147,7 +147,7 @@ class Fit:
         return loss(self.residual)
 
 
-def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
+def assess(estimate: Estimate, validation: Log | None = None, asked: int | None = None) -> Fit:
     """Assess an estimate: its uncertainty, its residual, and its error on unseen data.
 
     Whoever stopped a search does not wait: its uncertainty and unseen data are then not asked, and
@@ -157,16 +157,18 @@ def assess(estimate: Estimate, validation: Log | None = None) -> Fit:
         estimate: where a search ended.
         validation: the whole log, of which the estimation used the beginning; the rest is unseen
             data. None when there is none.
+        asked: how many of the first parameters are asked for; all when None. The others are unknown
+            too, which the std contain, and are fixed in what is returned.
 
     Raises:
         InputError: the robot cannot start with the estimated values.
         DivergenceError: a simulation near the estimate left the finite numbers.
     """
     with stage("std of the values, and tests of what is left"):
-        return _assessed(estimate, validation)
+        return _assessed(estimate, validation, asked)
 
 
-def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
+def _assessed(estimate: Estimate, validation: Log | None, asked: int | None) -> Fit:
     predictor, space, q = estimate.predictor, estimate.space, estimate.q
     log = predictor.log
     predicted = predictor.predict(space.decode(q))[0]
@@ -196,11 +198,17 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
     expected = np.hypot(rms(residual), spread)
     moves, step_error = step_shift(estimate, predicted, S, prior, whiten)
     shift = np.where(np.isfinite(std_q), moves, np.nan)
+    correlation = covariance / np.outer(scale, scale)
+    std = with_steps(std_q * space.slope(q), shift)
+    information = information_of(resolved, space, asked)
+    if asked is not None and asked < len(q):
+        estimate, found = estimate.about(asked), information.found
+        covariance = covariance[:asked, :asked]
     return Fit(
         estimate=estimate,
-        std=with_steps(std_q * space.slope(q), shift),
-        correlation=bounded(covariance / np.outer(scale, scale)),
-        at_bound=at_bound,
+        std=std[:asked],
+        correlation=bounded(correlation[:asked, :asked]),
+        at_bound=at_bound[:asked],
         found=found,
         combinations=combinations_of(found, estimate, covariance),
         residual=residual,
@@ -212,8 +220,8 @@ def _assessed(estimate: Estimate, validation: Log | None) -> Fit:
         validation_expected_by_unit=None if unseen is None else by_unit(expected, log),
         floor=noise_floor(log.outputs),
         tests=residual_tests(residual, log.inputs),
-        information=information_of(resolved, space),
-        step_shift=shift,
+        information=information,
+        step_shift=shift[:asked],
         step_error=step_error,
     )
 

@@ -1,6 +1,7 @@
 """The free parameters of a robot, fitted to one log or to several.
 
-The fit of a free run minimises its error over the first half of one log. If the robot's file gives
+The fit of a free run minimises its error over the first half of one log, whose beginning is
+estimated too (`identification.robot.beginning`). If the robot's file gives
 a horizon, the fit minimises the errors in windows of that length, each of which begins at a state
 of its own, over all logs; it is the fit of a discovery's nominal model
 (`identification.prediction.records_fit`).
@@ -8,12 +9,15 @@ of its own, over all logs; it is the fit of a discovery's nominal model
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from identification.errors import InputError, refuse_kind
+from identification.errors import DivergenceError, InputError, refuse_kind
 from identification.estimation.estimation import estimate
-from identification.estimation.fit import assess
+from identification.estimation.fit import Fit, assess
+from identification.estimation.search import Options
+from identification.logs.log import Log
 from identification.prediction.records_fit import fit_records
+from identification.robot.beginning import with_free_beginning
 from identification.robot.blame import told_of_factors
 from identification.robot.file.checks import refuse_horizon
 from identification.robot.file.file import refuse_nothing_free
@@ -61,12 +65,32 @@ def fit(robot: Robot, progress: Callable[[str], None] | None = None) -> RobotFit
         # A free run is fitted without priors: a common value cannot be told from its deviations.
         common = {a.name for a in file.spread if a.deviates}
         names = [name for name in file.free if name not in common]
-        estimated = estimate(model.plant, parts[0], names, progress=progress)
-        return RobotFit(robot, assess(estimated, robot.log), _files)
+        return RobotFit(robot, _free_run(robot, parts[0], names, progress), _files)
     for log in (*logs, *robot.records):
         refuse_horizon(file, log, is_whole)
     with told_of_factors(robot):
         return RobotFit(robot, fit_records(model, logs, robot.records, progress), _files)
+
+
+def _free_run(
+    robot: Robot, part: Log, names: Sequence[str], progress: Callable[[str], None] | None
+) -> Fit:
+    """Returns the fit of a free run and its beginning, or from where the log shows it to begin.
+
+    The latter where the former ends at values beside which the model cannot be simulated: a log
+    that contradicts the model may take a value anywhere.
+    """
+    plant, begun = with_free_beginning(robot)
+    if begun:
+        try:
+            options = Options(priors=begun)
+            every = [*names, *begun]
+            found = estimate(plant, part, every, options=options, progress=progress)
+            return assess(found, robot.log, len(names))
+        except DivergenceError:
+            pass
+    found = estimate(robot.nominal_model.plant, part, names, progress=progress)
+    return assess(found, robot.log)
 
 
 def _files(fitted: RobotFit) -> Files:

@@ -23,6 +23,7 @@ from identification.logs.stamps.decimation import decimate
 from identification.logs.table import MissingColumnsError
 from identification.model.plant import start_place
 from identification.model.predictor import output_columns
+from identification.model.rollout import State
 from identification.refusals.limits import refuse_limits
 from identification.refusals.unmeasured import refuse_unmeasured
 from identification.robot.file.carried import with_carried
@@ -129,9 +130,14 @@ class Robot:
             n: measured_start(self.plant.model, at[n].where, log, at[n].value) for n in self.starts
         }
 
-    def plant_of(self, log: Log) -> JointPlant:
-        """Returns the plant as it begins in a log, with the values that hold there."""
-        start = start_of(self.file, self.plant.model, log)
+    def plant_of(self, log: Log, begun: State | None = None) -> JointPlant:
+        """Returns the plant as it begins in a log, with the values that hold there.
+
+        Args:
+            log: of the robot.
+            begun: the initial state where it is known better than the log shows it.
+        """
+        start = begun or start_of(self.file, self.plant.model, log)
         plant = replace(self.plant, bare=replace(self.plant.bare, start=start))
         return plant.with_values(log.values) if log.values else plant
 

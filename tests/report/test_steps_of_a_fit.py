@@ -33,10 +33,10 @@ def recorded(path, friction=0.0):
     return path
 
 
-def fitted(folder, log, step=STEP, free=GAINS):
+def fitted(folder, log, step=STEP, free=GAINS, horizon="horizon = 0.3"):
     (folder / "arm.xml").write_text(ARM.format(step=step, kp=22, kv=0.3))
     (folder / "arm.toml").write_text(
-        f'model = "arm.xml"\nfree = {free}\ntrust = ["steps"]\nhorizon = 0.3\n'
+        f'model = "arm.xml"\nfree = {free}\ntrust = ["steps"]\n{horizon}\n'
     )
     return fit(read_robot(folder / "arm.toml", log))
 
@@ -68,12 +68,16 @@ def test_it_is_that_of_a_fit_with_finer_steps_however_the_model_is_written(fits)
     assert paths.model.finer.error == pytest.approx(gains.model.finer.error, rel=0.03)
 
 
-def test_who_writes_the_steps_that_are_named_is_never_told_that_something_is_missing(folder, log):
-    step, said = STEP, []
+@pytest.mark.parametrize("horizon", ["horizon = 0.3", ""])
+def test_who_writes_the_steps_that_are_named_is_never_told_that_something_is_missing(
+    folder, log, horizon
+):
+    step, said = STEP / 3, []
     for _ in range(4):
-        verdict = fitted(folder, log, step).to_dict()["verdict"]
+        verdict = fitted(folder, log, step, horizon=horizon).to_dict()["verdict"]
         missing = [s for s in verdict if "is missing" in s and "not from something" not in s]
         assert not missing
+        assert not [s for s in verdict if "lacks something" in s]
         said.append(verdict[0])
         if verdict[0].startswith("The model with the fitted values explains the log"):
             break
@@ -85,6 +89,8 @@ def test_who_writes_the_steps_that_are_named_is_never_told_that_something_is_mis
 
 @pytest.mark.parametrize("friction", [0.05, 0.4])  # 7 and 60 times the noise
 @pytest.mark.parametrize("step", [STEP, STEP / FINER])
-def test_what_is_missing_is_told_also_where_steps_are_coarse(folder, friction, step):
+@pytest.mark.parametrize("horizon", ["horizon = 0.3", ""])
+def test_what_is_missing_is_told_also_where_steps_are_coarse(folder, friction, step, horizon):
     log = recorded(folder / "rough.csv", friction)
-    assert fitted(folder, log, step).to_dict()["verdict"][0].startswith("Something is missing")
+    verdict = fitted(folder, log, step, horizon=horizon).to_dict()["verdict"]
+    assert verdict[0].startswith("Something is missing")

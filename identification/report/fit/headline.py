@@ -11,7 +11,7 @@ from identification.estimation.fit import Fit
 from identification.prediction.fits.record_errors import errors_by_unit
 from identification.prediction.records_fit import RecordsFit
 from identification.report.fit.step_words import part_of_steps
-from identification.report.fit.verdict import ABOVE, error_over_noise, judged_on
+from identification.report.fit.verdict import error_over_noise, judged_on, most_of_noise
 from identification.report.page.headline import Answer, Headline, Tile, error_tile
 from identification.report.words.effects import value_with_std
 from identification.shares import times_noise
@@ -49,13 +49,14 @@ def _judged(fit: Fit | RecordsFit, is_better: bool) -> tuple[str, str]:
     if isnan(ratio):
         return "Fitted", ""
     left = f"The error on {judged_on(fit)} is {times_noise(ratio)}"
-    part = part_of_steps(fit, ratio, ABOVE)
+    most = most_of_noise(fit)
+    part = part_of_steps(fit, ratio, most)
     if part != "no":
         return (
             "Fitted, and its steps are too coarse",
             f"{left}, and {part} of what is above it comes from the steps of the simulation.",
         )
-    if ratio > ABOVE:
+    if ratio > most:
         return "Fitted, and something is missing", f"{left}; discover looks for what it is."
     if not is_better:
         said = "but unseen data do not confirm that the values are better"

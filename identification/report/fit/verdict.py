@@ -11,7 +11,7 @@ import numpy as np
 from identification.estimation.fit import Fit
 from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
-from identification.report.fit.fitted_values import std_sentence, step_sentences
+from identification.report.fit.fitted_values import first_few, std_sentence, step_sentences
 from identification.report.fit.step_words import free_run_steps, part_of_steps, steps_answer
 from identification.report.fit.untold_words import (
     WEAK,
@@ -31,8 +31,10 @@ if TYPE_CHECKING:  # both are slow to import
     from identification.windows.window_estimate import WindowEstimate
 
 # A residual above this multiple of the noise floor is more than noise; the floor itself is an upper
-# bound of the noise that errs by a few percent.
+# bound of the noise that errs by a few percent, and by `FLOOR`/√n of n samples: 8 % of 400.
 ABOVE = 1.2
+FLOOR = 1.6  # of white noise: std of ln(floor) times √n, within 5 % from 60 to 4000 samples
+SURE = 3.0  # such std, for a white residual that shows nothing but its size
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
@@ -59,6 +61,17 @@ def _holds(fit: Fit) -> bool:
     return not (there and expected) or relative(there, expected) < HOLDS
 
 
+def most_of_noise(fit: Fit | RecordsFit) -> float:
+    """Returns the multiple of the noise floor up to which an error is noise.
+
+    The floor of few samples errs by more, which a residual along a free run that is white leaves
+    open. One that is not says itself that it is no noise.
+    """
+    if not isinstance(fit, Fit) or not _holds(fit) or coloured_outputs(fit):
+        return ABOVE
+    return max(ABOVE, float(np.exp(SURE * FLOOR / np.sqrt(len(fit.residual)))))
+
+
 def judged_on(fit: Fit | RecordsFit) -> str:
     """Returns of which data the error is by which a fit is judged."""
     if isinstance(fit, Fit):
@@ -81,8 +94,9 @@ def answer_sentence(fit: Fit | RecordsFit, is_better: bool = True) -> str:
     if isnan(ratio):
         return "Whether the model explains the log is not known: the log shows no sensor noise."
     of_what = f"its error on {judged_on(fit)} is {times_noise(ratio)} of the sensors"
-    if not ratio <= ABOVE:
-        part = part_of_steps(fit, ratio, ABOVE)
+    most = most_of_noise(fit)
+    if not ratio <= most:
+        part = part_of_steps(fit, ratio, most)
         if part != "no":
             return steps_answer(fit, part, of_what)
         return (
@@ -101,7 +115,7 @@ def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
     if fit.stopped:  # a search that was stopped says nothing of the model
         return search_sentences(fit)
     return [
-        *search_sentences(fit), *identifiable_sentences(fit), *_enough(fit),
+        *search_sentences(fit), *_begun(fit), *identifiable_sentences(fit), *_enough(fit),
         *free_run_steps(fit), *_unseen(fit),
     ]  # fmt: skip
 
@@ -148,6 +162,17 @@ def search_sentences(fit: Fit) -> list[str]:
     return [said, *bound_sentences(fit.estimate.predictor.plant.parameters, bound)]
 
 
+def _begun(fit: Fit) -> list[str]:
+    """Returns a sentence on what of the log's beginning was estimated beside the values."""
+    begun = fit.information.names[fit.information.asked :]
+    if not begun:
+        return []
+    return [
+        f"Where the log begins ({first_few(begun)}) was estimated too, because its first samples"
+        " tell it with noise; the std of the values contain this."
+    ]
+
+
 def coloured_outputs(fit: Fit) -> int:
     """Returns how many outputs' residuals are not white."""
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
@@ -166,16 +191,16 @@ def _left_by_windows(
 
 
 def _enough(fit: Fit) -> list[str]:
-    ratio = relative(fit.rms_by_unit, fit.floor_by_unit)
+    ratio, most = relative(fit.rms_by_unit, fit.floor_by_unit), most_of_noise(fit)
     (left,), (floor,) = error_words([fit.rms_by_unit]), error_words([fit.floor_by_unit], "")
     times = times_words(fit.rms_by_unit, fit.floor_by_unit)
     sentences = [f"The residual is {left}, {times} times the noise floor of {floor}."]
     dependent = int((fit.tests.independent < LEVEL / len(fit.tests.independent)).sum())
     coloured = coloured_outputs(fit)
-    part = part_of_steps(fit, ratio, ABOVE)
+    part = part_of_steps(fit, ratio, most)
     if part != "no":
         return [*sentences, f"That is more than noise, and {part} of it comes from the steps."]
-    if ratio > ABOVE:
+    if ratio > most:
         sentences.append(
             "That is more than noise: the model lacks something, or the robot was disturbed."
         )
@@ -189,7 +214,7 @@ def _enough(fit: Fit) -> list[str]:
             f"The residual of {_outputs(coloured)} is coloured, and none depends on the input: the"
             " noise is not white, or there is an effect that the input does not excite."
         )
-    elif ratio > ABOVE:
+    elif ratio > most:
         sentences.append("It is white and independent of the input: look at the sensors first.")
     else:
         sentences.append("The residual is white and independent of the input: the model suffices.")
@@ -216,9 +241,10 @@ def _unseen(fit: Fit) -> list[str]:
     if ratio < HOLDS:
         said = "what was fitted holds there too"
         left = relative(fit.rms_by_unit, fit.floor_by_unit)
-        if part_of_steps(fit, left, ABOVE) != "no":
+        most = most_of_noise(fit)
+        if part_of_steps(fit, left, most) != "no":
             said = "no worse than on what was fitted, and the steps err there too"
-        elif left > ABOVE:
+        elif left > most:
             said = "no worse than on what was fitted, but what is missing is missing there too"
     return [
         f"On unseen data the residual is {unseen}, {times_words(there, expected)} times what the"

@@ -163,7 +163,7 @@ def _in_model(
     place = start_place(path, model)
     if place is not None:
         reset = float(getattr(own_start(model), place[0])[place[1]])
-        moved = _moved(model, place, log)
+        moved = motion_of_start(model, place, log)
         fields |= {"value": measured_start(model, path, log, reset), "scale": moved}
         return Parameter(name=name, **{**fields, **given}), moved
     of_body = spread_place(path, model)
@@ -207,7 +207,7 @@ def _possible(model: mujoco.MjModel, slot: Slot, alone: bool) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _moved(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:
+def motion_of_start(model: mujoco.MjModel, place: tuple[str, int], log: Log) -> float:
     """Returns a magnitude that matters for an entry of the start: a small share of its motion."""
     columns = output_columns(model, log.output_names)
     if place in columns:

@@ -12,6 +12,7 @@ from identification.errors import InputError, refuse_kind
 from identification.estimation.metrics import rms_by_unit
 from identification.logs.log import Log
 from identification.model.predictor import Plant, Predictor
+from identification.model.rollout import State
 from identification.prediction.fits.model import predict_fitted
 from identification.prediction.fits.record_errors import record_errors
 from identification.prediction.records_fit import RecordsFit
@@ -52,7 +53,7 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
     if isinstance(found, RobotFit):
         if found.found.horizon is not None:
             return _over_windows(robot, found, found.found)
-        return _over_free_run(robot, {}, found.values)
+        return _over_free_run(robot, {}, found.values, begun=found.begun)
     if found.horizon is not None:
         return _of_discovery(robot, found)
     after, told = collect_final_values(found), None if found.run is None else found.run.told
@@ -78,17 +79,22 @@ def _over_free_run(
     after: Mapping[str, float],
     models: tuple[str, str] = (AS_WRITTEN, FITTED),
     told: np.ndarray | None = None,
+    begun: State | None = None,
 ) -> tuple[Confirmation, ...]:
     """Compares two sets of values on the records, or on the unseen part of the only log.
 
-    Of what is unseen only the samples `told` count, (N,), on which a search has not decided.
+    Of what is unseen only the samples `told` count, (N,), on which a search has not decided. On the
+    only log, the values `after` go with the initial state `begun` that was estimated with them.
     """
     if not robot.records:
         log, part = robot.log, robot.log.part("validation")
         rows, given = np.isin(log.time, part.time), robot.values_of(log)
         if told is not None and len(told) == len(rows):
             rows = told
-        errors = [_free_run(robot, log, {**values, **given})[rows] for values in (before, after)]
+        errors = [
+            _free_run(robot, log, {**values, **given}, start)[rows]
+            for values, start in ((before, None), (after, begun))
+        ]
         return (_compared(part, errors, models),)
     kept = keep_of_robot(after, robot.plant.effects)
     return tuple(compare_values(robot, log, before, kept, models) for log in robot.records)
@@ -137,14 +143,18 @@ def _errors(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
     return window_error(plant_with(robot, log, here), log, horizon, here)
 
 
-def plant_with(robot: Robot, log: Log, values: Mapping[str, float]) -> Plant:
+def plant_with(
+    robot: Robot, log: Log, values: Mapping[str, float], begun: State | None = None
+) -> Plant:
     """Returns the plant of a record, with the states that the effects among some values need."""
-    plant = robot.plant_of(log)
+    plant = robot.plant_of(log, begun)
     if not isinstance(plant, JointPlant):
         return plant
     return plant.with_states_of(n for n, v in values.items() if v != 0)
 
 
-def _free_run(robot: Robot, log: Log, values: Mapping[str, float]) -> np.ndarray:
-    predictor = Predictor(plant_with(robot, log, values), log, (), dict(values))
+def _free_run(
+    robot: Robot, log: Log, values: Mapping[str, float], begun: State | None = None
+) -> np.ndarray:
+    predictor = Predictor(plant_with(robot, log, values, begun), log, (), dict(values))
     return np.asarray(log.outputs - predictor.predict(np.empty((1, 0)))[0])

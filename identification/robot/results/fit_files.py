@@ -283,7 +283,8 @@ def _values(found: RobotFit, log: Log) -> dict[str, float]:
 
 def _free_run(found: RobotFit, log: Log) -> Figure:
     values = _values(found, log)
-    predictor = Predictor(plant_with(found.robot, log, values), log, (), values)
+    begun = found.begun if log is found.robot.log else None
+    predictor = Predictor(plant_with(found.robot, log, values, begun), log, (), values)
     simulated = np.asarray(predictor.predict(np.empty((1, 0)))[0])
     fit, names, unit = fit_percent(log.outputs, simulated), log.output_names, log.output_unit
     return compare_figure(log.time, log.outputs, simulated, fit, names, unit)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from identification.estimation.fit import Fit
 from identification.logs.log import Log
+from identification.model.rollout import State
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import quantity
 from identification.report.torques.words import size_words
@@ -90,6 +91,14 @@ class RobotFit(Written):
         Such values are not to be used. Only a fit over a horizon is compared in this way.
         """
         return self.found.worse is not None
+
+    @property
+    def begun(self) -> State | None:
+        """The initial state of a free run that was estimated with the values; None over windows."""
+        if not isinstance(self.found, Fit):
+            return None
+        estimate = self.found.estimate
+        return estimate.predictor.settings(estimate.space.decode(estimate.q))[0].rows(0)
 
     @property
     def unseen(self) -> tuple[Confirmation, ...]:
