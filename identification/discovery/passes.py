@@ -26,6 +26,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "suggested_effects": (
         HORIZON, "refits effects that the joints' torques have named, whatever their scores are",
     ),
+    "add_yielding_friction": (
+        HORIZON, "fits a friction that gives before it slips from its largest compliance",
+    ),
     "add_set": (HORIZON, "adds several effects that are proven together and not alone"),
     "add_curve": (HORIZON, "adds a curve of the data where neither a law nor a set is proven"),
     "plain_sets": (
@@ -74,6 +77,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "losing_blocks": (
         HORIZON, "lets a record contradict an effect only where its blocks lose on average too",
+    ),
+    "loud_windows": (
+        HORIZON, "takes the windows that err most where effects are fitted to some windows first",
     ),
     "simpler_laws": (HORIZON, "fits laws with fewer numbers that act as the best one does"),
     "several_places": (

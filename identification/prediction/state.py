@@ -19,6 +19,7 @@ from identification.prediction.judging.trial import compared, find_doubt
 from identification.prediction.moves.add_curve import add_curve
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.add_set import add_set
+from identification.prediction.moves.add_yielding_friction import add_yielding_friction
 from identification.prediction.moves.drop_doubtful import drop_doubtful
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
@@ -36,6 +37,7 @@ FEWEST_BLOCKS = 3  # of unseen windows, whose scatter is known
 MOVES = (
     Move("likeliest_of_set", finishing(likeliest_of_set)),
     Move("add_effect", add_effect, grows=True),
+    Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
     Move("add_curve", add_curve, grows=True),
     Move("drop_effects", finishing(drop_effects)),

@@ -85,7 +85,7 @@ def search(hidden, suggested, *without):
 def test_a_suggested_effect_is_refitted_whatever_its_score_is(monkeypatch):
     monkeypatch.setattr(selection, "list_contenders", lambda *_: [])
     hidden = {"hardening.k_3@hinge": 0.1}
-    rest = ("add_set", "add_curve")
+    rest = ("add_set", "add_curve", "add_yielding_friction")
     (named,) = search(hidden, ["hardening"], *rest).named
     assert named.name == "hardening"
     assert search(hidden, ["hardening"], *rest, "suggested_effects").named == ()
@@ -96,7 +96,7 @@ def test_what_changes_a_level_is_not_refitted_without_one(monkeypatch):
     monkeypatch.setattr(selection, "list_contenders", lambda *_: [])
     logs = records(4, {"coulomb_friction.f_c@hinge": 0.3}, samples=240)
     changes = listed("asymmetric_friction")
-    options = DiscoveryOptions(without=("add_set", "add_curve"))
+    options = DiscoveryOptions(without=("add_set", "add_curve", "add_yielding_friction"))
     found = discover_records(
         nominal_model(), logs[:2], logs[2:], changes, None, options, list_common(changes)
     )

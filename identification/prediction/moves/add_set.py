@@ -153,6 +153,7 @@ def with_one(state: WindowSearch, model: WindowModel, candidate: Candidate) -> W
     def evaluate() -> WindowModel | None:
         scores = window_scores(model.fit, [candidate])
         starts = [s for one in scores for s in (one, *list_starts(one, scores))]
-        return with_effect(model, begin(model, starts), state.task.horizon, state.task.confirm)
+        begun = begin(model, starts, uses(state.task.options, "loud_windows"))
+        return with_effect(model, begun, state.task.horizon, state.task.confirm)
 
     return attempt(candidate, evaluate)

@@ -50,30 +50,31 @@ class Begun:
     q: np.ndarray  # the estimate, shape (p,)
 
 
-def begin(parent: WindowModel, scores: Sequence[WindowScore]) -> Begun:
+def begin(parent: WindowModel, scores: Sequence[WindowScore], is_loud: bool = True) -> Begun:
     """Returns an effect fitted to some of the windows, from the best of several starts.
 
     Args:
         parent: the model without it.
         scores: of the effect on the parent, one for each start: where shapes and sizes begin.
+        is_loud: whether half of these windows are those that err most (`picks`).
 
     Raises:
         InputError: it cannot be simulated from any start, whatever the size.
     """
     starts = [s for one in scores for s in (_shaped(one) if one.candidate.effect.state else [one])]
-    begun = [b for b in (_begun(parent, score) for score in starts) if b is not None]
+    begun = [b for b in (_begun(parent, score, is_loud) for score in starts) if b is not None]
     if not begun:
         c = scores[0].candidate
         raise InputError(f"{c.effect.name}, {c.where} cannot be simulated at any size")
     return min(begun, key=lambda b: b.cost)
 
 
-def _begun(parent: WindowModel, score: WindowScore) -> Begun | None:
+def _begun(parent: WindowModel, score: WindowScore, is_loud: bool) -> Begun | None:
     """Returns the fit of some windows; None where it cannot be simulated at any size."""
     c = score.candidate
     parent = model_for(parent, c)
     task, fixed = _task(parent, c)
-    at = picks(parent.fit.tangents)
+    at = picks(parent.fit.tangents, is_loud=is_loud)
     few, begun = thinned(task, at), thinned_moves(parent.fit.moves, at)
     near = thinned_tangents(parent.fit.tangents, at)
     least = parent.fit.problem.cost_of(parent.fit.q, [t.r for t in near])
@@ -161,15 +162,32 @@ def shapes_of(c: Candidate) -> list[str]:
     return [c.effect.parameter(s.name, c.where) for s in c.effect.shapes if s.free]
 
 
-def picks(tangents: Sequence[Tangent], every: int = THIN) -> tuple[np.ndarray, ...]:
+def picks(
+    tangents: Sequence[Tangent], every: int = THIN, is_loud: bool = True
+) -> tuple[np.ndarray, ...]:
     """Returns indices of one window of `every` a record, but of no fewer than `MIN_WINDOWS`.
+
+    Half of them are those that err most, and the others are spread evenly. A stop, a limit or a
+    play acts in few windows, and those that are spread evenly may have none of them.
 
     Args:
         tangents: of a fitted model, one a record.
         every: n.
+        is_loud: whether the windows that err most are taken; otherwise all are spread evenly.
     """
-    counts = (len(t.r) for t in tangents)
-    return tuple(np.arange(0, n, max(1, min(every, n // MIN_WINDOWS))) for n in counts)
+    return tuple(_kept(np.sum(t.r**2, axis=1), every, is_loud) for t in tangents)
+
+
+def _kept(squares: np.ndarray, every: int, is_loud: bool) -> np.ndarray:
+    """Returns the indices of the windows that are kept, of those with these sums of squares."""
+    count = len(squares)
+    even = np.arange(0, count, max(1, min(every, count // MIN_WINDOWS)))
+    if not is_loud or len(even) == count:
+        return even
+    loud = np.argsort(-squares, kind="stable")[: len(even) // 2]
+    rest = np.setdiff1d(np.arange(count), loud)
+    spread = np.linspace(0, len(rest) - 1, len(even) - len(loud)).round().astype(int)
+    return np.sort(np.concatenate([loud, rest[spread]]))
 
 
 def thinned(problem_: Problem, at: Sequence[np.ndarray]) -> Problem:

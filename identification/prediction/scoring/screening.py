@@ -86,7 +86,7 @@ def some_windows(fit: WindowFit, every: int = THIN) -> WindowFit:
 
     They are spread evenly: shares of the error and chances of luck are those of all windows.
     """
-    at = picks(fit.tangents, every)
+    at = picks(fit.tangents, every, is_loud=False)
     return replace(
         fit, problem=thinned(fit.problem, at), moves=thinned_moves(fit.moves, at),
         tangents=thinned_tangents(fit.tangents, at),

@@ -166,8 +166,9 @@ def _begun(
     options: DiscoveryOptions,
 ) -> list[Begun]:  # fmt: skip
     """Returns effects fitted to some of the windows; those that cannot be simulated are told."""
+    is_loud = uses(options, "loud_windows")
     each = ((s.candidate, [s, *list_starts(s, scores)]) for s in chosen)
-    tasks = [(c, partial(begin, model, starts)) for c, starts in each]
+    tasks = [(c, partial(begin, model, starts, is_loud)) for c, starts in each]
     return [begun for begun in attempt_each(tasks) if begun is not None]
 
 

@@ -40,6 +40,7 @@ from identification.storage.shown import verdict_of
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
 SOUGHT = {  # what the moves that the time limit ends seek, by their names
     "add_effect": "the next effect",
+    "add_yielding_friction": "a friction that yields before it slips",
     "add_set": "sets of several effects",
     "add_curve": "curves of the data",
     "add_pair": "pairs of effects",
