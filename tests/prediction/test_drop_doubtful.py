@@ -71,7 +71,7 @@ def after(monkeypatch, doubts, parts="", shares=(), begun=None):
         return Neighbour("curve", "joint", 0.5, 0.0, 0.5 if is_part else 0.01)
 
     monkeypatch.setattr(drop_doubtful, "names_of", lambda *given: (named, None))
-    monkeypatch.setattr(drop_doubtful, "doubts_of_values", lambda state: ())
+    monkeypatch.setattr(drop_doubtful, "forbidden_of", lambda state: ())
     monkeypatch.setattr(drop_doubtful, "is_off", lambda *given: True)
     monkeypatch.setattr(drop_doubtful, "doubts_of_names", lambda *given: tuple(doubts.values()))
     monkeypatch.setattr(drop_doubtful, "neighbour_of", beside)

@@ -26,7 +26,6 @@ from identification.prediction.scoring.screening import at_several, felt_places
 from identification.prediction.selection.edges import without_edges
 from identification.prediction.selection.selection import STRONG_BIC, ranked
 from identification.prediction.task import RecordsTask
-from identification.prediction.verdict.doubts import doubts_of_values
 from identification.prediction.verdict.verdict import conclude
 from identification.report.discovery.horizon_gap import find_gap
 from identification.report.discovery.json import discovery_to_json
@@ -179,19 +178,6 @@ def test_errors_before_and_after_are_of_the_same_windows_where_a_shift_has_cut_t
     assert [len(r.time) for r in (fitted, confirm)] == [len(r.before) for r in (fitted, confirm)]
     assert len(fitted.before) == len(fitted.after) == len(model.fit.errors[0])
     assert np.median(fitted.before) > np.median(fitted.after)
-
-
-def test_a_size_that_is_not_beyond_its_std_in_the_final_model_is_no_name():
-    _, state = with_shift(0.016, 0.016)
-    model, accepted, _ = likeliest_of_set(without_edges(state), print)
-    state = replace(state, model=model, accepted=accepted)
-    assert doubts_of_values(state) == (None,)
-    (name,) = accepted[0].candidate.free
-    t = model.fit.values[name] / model.std[name]
-    for times, doubt in ((0.9, None), (1.1, "size")):
-        options = replace(state.task.options, min_proof_t=times * t)
-        judged_by = replace(state, task=replace(state.task, options=options))
-        assert doubts_of_values(judged_by) == (doubt,)
 
 
 def test_shifts_that_differ_stay_differences():

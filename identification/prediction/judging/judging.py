@@ -79,7 +79,7 @@ def doubt_of_size(model: WindowModel, options: DiscoveryOptions) -> Doubt | None
         model: with the effect.
         options: what is beyond chance.
     """
-    if not has_size(model, model.candidates[-1], options):
+    if not has_size(model, options):
         return "size"
     if is_at_bound(model, uses(options, "shape_bounds")):
         return "bound"

@@ -167,19 +167,14 @@ def contradicts_a_record(found: Prediction, options: DiscoveryOptions) -> bool:
     )
 
 
-def has_size(model: WindowModel, c: Candidate, options: DiscoveryOptions) -> bool:
-    """Returns whether a free size of an effect is beyond its own std, where it has one.
+def has_size(model: WindowModel, options: DiscoveryOptions) -> bool:
+    """Returns whether a free size of the last effect is beyond its own std, where it has one.
 
     The size must also be beyond the error of the simulation's steps. A curve is not asked: beside a
     free level or slope each of its nodes may be unknown although the curve is known, and the
     evidence, which pays for every node, judges the curve as a whole.
-
-    Args:
-        model: fitted, with the effect.
-        c: the effect.
-        options: how many std are beyond chance.
     """
-    std, values = model.std, model.fit.values
+    std, values, c = model.std, model.fit.values, model.candidates[-1]
     least = {n: s.smallest for n, s in zip(c.sizes, c.effect.sizes, strict=True)}
     own = [n for n in model.fit.problem.names if n.partition(" [")[0] in c.free]
     times = 0.0 if c.effect.is_curve else options.min_proof_t

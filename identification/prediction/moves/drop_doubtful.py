@@ -33,7 +33,7 @@ from identification.prediction.selection.set_members import Key
 from identification.prediction.task import WindowSearch
 from identification.prediction.verdict.doubts import (
     doubts_of_names,
-    doubts_of_values,
+    forbidden_of,
     laws_of,
     names_of,
 )
@@ -68,7 +68,7 @@ def _judged(state: WindowSearch) -> tuple[list[Contender], list[Contender]]:
     """Returns the effects whose names are sure beside all others, and those in doubt, with why."""
     options, laws = state.task.options, laws_of(state)
     named, stick = names_of(state, options.max_confidence, is_off(state.model, options))
-    doubts = doubts_of_names(named, doubts_of_values(state), (), 1.0, options)
+    doubts = doubts_of_names(named, forbidden_of(state), (), 1.0, options)
     why = {a.candidate.key: d for a, d in zip(laws, doubts, strict=True) if d is not None}
     if uses(options, "further_laws"):
         rest = [n for n in named if n.candidate.key not in why]

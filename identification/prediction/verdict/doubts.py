@@ -2,7 +2,6 @@
 
 neighbour     a force drawn from the data explains much of what a law leaves
 mass, ...     physics forbids the size (`identification.discovery.impossible`)
-size          beside what was found later, its size is not beyond its std any more
 odds          others in its place are likelier than it, and it is in no set with its look-alike
 gap           it closes less of the gap than a name has to, and something is left
 beside        nothing, but it was found beside an effect that has no sure name
@@ -19,8 +18,7 @@ from identification.discovery.findings.finding import Finding
 from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
-from identification.effects.effect import Candidate
-from identification.prediction.judging.trial import Contender, Doubt, has_size
+from identification.prediction.judging.trial import Contender, Doubt
 from identification.prediction.task import WindowSearch
 from identification.prediction.verdict.neighbours import has_neighbours_name
 from identification.prediction.verdict.told_effects import named_effect
@@ -49,31 +47,28 @@ def laws_of(state: WindowSearch) -> tuple[Contender, ...]:
     return tuple(a for a in state.accepted if not a.candidate.effect.is_of_records)
 
 
-def doubts_of_values(state: WindowSearch) -> tuple[Doubt | None, ...]:
-    """Returns what speaks against the values of each effect that may be named, in the final model.
+def forbidden_of(state: WindowSearch) -> tuple[Doubt | None, ...]:
+    """Returns what physics forbids of each effect that may be named, at the model's values.
 
     Later effects may have moved them since it was accepted.
     """
-    options, logs = state.task.options, [r.log for r in state.task.records]
-
-    def doubt(c: Candidate) -> Doubt | None:
-        forbidden = find_impossible(c, state.model, logs)
-        if forbidden and uses(options, "impossible_sizes"):
-            return forbidden
-        return None if has_size(state.model, c, options) else "size"
-
-    return tuple(doubt(a.candidate) for a in laws_of(state))
+    logs = [r.log for r in state.task.records]
+    is_asked = uses(state.task.options, "impossible_sizes")
+    return tuple(
+        find_impossible(a.candidate, state.model, logs) if is_asked else None
+        for a in laws_of(state)
+    )
 
 
 def doubts_of_names(
-    named: Sequence[NamedEffect], of_values: Sequence[Doubt | None],
+    named: Sequence[NamedEffect], impossible: Sequence[Doubt | None],
     findings: Sequence[Finding], share: float, options: DiscoveryOptions,
 ) -> tuple[Doubt | None, ...]:  # fmt: skip
     """Returns why each accepted effect is no name; None where nothing is against it.
 
     Args:
         named: the accepted effects.
-        of_values: what speaks against the values of each.
+        impossible: what physics forbids of each.
         findings: what the final model leaves.
         share: of the gap that the effects close.
         options: what is beyond chance, and enough to matter.
@@ -81,8 +76,8 @@ def doubts_of_names(
     of_all: Doubt | None = "gap" if _is_small(named, findings, share, options) else None
     return tuple(
         "neighbour" if has_neighbours_name(n.neighbour, options)
-        else against or of_all or (None if is_sure(n) else "odds")
-        for n, against in zip(named, of_values, strict=True)
+        else forbidden or of_all or (None if is_sure(n) else "odds")
+        for n, forbidden in zip(named, impossible, strict=True)
     )  # fmt: skip
 
 

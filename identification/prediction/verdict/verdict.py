@@ -33,7 +33,7 @@ from identification.prediction.judging.extension import as_last_fit, refitted
 from identification.prediction.judging.trial import Contender, Doubt
 from identification.prediction.task import WindowSearch
 from identification.prediction.verdict.clocks import record_shifts
-from identification.prediction.verdict.doubts import doubts_of_names, doubts_of_values, names_of
+from identification.prediction.verdict.doubts import doubts_of_names, forbidden_of, names_of
 from identification.prediction.verdict.recovery import recover_over_horizon
 from identification.prediction.verdict.remaining import find_remaining, is_off, needed_input_error
 from identification.prediction.verdict.told_effects import (
@@ -76,7 +76,7 @@ def conclude(state: WindowSearch) -> Discovery:
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     # Where the fit was worse than the values with which it began, an effect says why.
     closes = largest_share(state.worse_fit or nominal.unseen, model.unseen, options)
-    doubts = doubts_of_names(named, doubts_of_values(state), findings, closes, options)
+    doubts = doubts_of_names(named, forbidden_of(state), findings, closes, options)
     verdict, doubtful = decide(named, doubts, findings, is_unexplained), None
     log, by_joint = task.records[0].log, dict[str, float]()
     if verdict == "unknown effect":
