@@ -7,6 +7,7 @@ import pytest
 
 from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
+from identification.discovery.fitted import StepShift
 from identification.discovery.options import DiscoveryOptions
 from identification.prediction.judging.trial import CONTRADICTED, OWN_SHARE, find_rivals
 from identification.prediction.verdict import remaining
@@ -44,7 +45,7 @@ def kinds(
 
 
 def state_of(unseen, accepted, outputs=("x",), finer=np.nan):
-    units, steps = dict.fromkeys(outputs, "rad"), SimpleNamespace(error=finer)
+    units, steps = dict.fromkeys(outputs, "rad"), StepShift(np.zeros(0), finer)
     log = SimpleNamespace(output_names=outputs, units=units, name="c")
     told = SimpleNamespace(report=unseen, noise=unseen.noise)
     return SimpleNamespace(
@@ -84,7 +85,7 @@ def test_much_is_left_where_one_output_errs_by_much(monkeypatch):
             at_horizon=(np.array([each.mean()]),), noise=noise, of_outputs=(each[None],),
             floor=noise.mean(),
         )  # fmt: skip
-        steps = SimpleNamespace(error=np.nan)
+        steps = StepShift(np.zeros(0), np.nan)
         told = SimpleNamespace(select=select, report=select, floor=select.floor)
         model = SimpleNamespace(unseen=told, fit=None, scale=np.ones(2), finer=steps)
         assert remaining.is_much_left(model, OPTIONS) == is_much
