@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from identification.estimation.uncertainty import mostly_steps
+from identification.estimation.uncertainty import mostly_steps, share_left
 from identification.model.predictor import Plant
 
 # Of the error of the fitted windows: below it a fifth of the mean square comes from the steps, and
@@ -46,7 +46,7 @@ class StepShift:
     @property
     def left(self) -> float:
         """The share of the rms error that finer steps would leave: 1 where all of it."""
-        return min(1.0, self.error) if np.isfinite(self.error) else 1.0
+        return share_left(self.error)
 
     def is_lower(self) -> bool:
         """Returns whether finer steps would lower the error by so much that it is told."""

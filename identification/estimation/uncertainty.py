@@ -102,6 +102,15 @@ def influence(error: np.ndarray, loss: str) -> tuple[np.ndarray, float]:
     return first(z) * error, max(MIN_CURVATURE, float(np.mean(first(z) + 2 * z * second(z))))
 
 
+def share_left(error: float) -> float:
+    """Returns the share of an rms error that finer steps would leave: 1 where all of it.
+
+    Args:
+        error: the error with finer steps over what it is, no unit; NaN where it is not known.
+    """
+    return min(1.0, error) if np.isfinite(error) else 1.0
+
+
 def step_shift(
     estimate: Estimate, predicted: np.ndarray, S: np.ndarray, prior: np.ndarray,
     whiten: Callable[[np.ndarray], np.ndarray],

@@ -63,7 +63,8 @@ from identification.runtime.pool import run_parts, threads
 
 STEP = 1e-6  # of the differences, in the units of the states
 TIED_STEP = 1e-8  # where joints are tied: MuJoCo's equalities are softer the less they are violated
-PUSHED = 1e-3  # acceleration of a joint by the force that is moved where constraints answer it
+# Acceleration of a joint by the force that is moved where constraints answer it [rad/s² or m/s²].
+PUSHED = 1e-3
 FIELDS = len(Joint._fields)
 M = offsets("mjModel", "njnt nq nv na nu nuser_jnt jnt_user jnt_type jnt_qposadr jnt_dofadr")
 D = offsets("mjData", "qpos qvel act qfrc_applied qfrc_bias qfrc_passive efc_force")

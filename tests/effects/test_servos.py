@@ -91,7 +91,7 @@ def test_another_gain_is_that_of_another_servo(gamma, more):
     servo, u = replace(SERVO, **more), setpoints(4, 150)
     got = run(lever(servo), servo_log(u), **{OTHER: gamma})
     other = replace(servo, kp=(1 + gamma) * servo.kp)
-    np.testing.assert_allclose(got, run(lever(other), servo_log(u)), atol=2e-3)
+    np.testing.assert_allclose(got, run(lever(other), servo_log(u)), atol=1e-12)
     assert np.abs(got - run(lever(servo), servo_log(u))).max() > 0.02
 
 

@@ -38,7 +38,7 @@ ECCENTRICITY = 0.02  # [rad]
 # Of a turn of a hinge, below which its disc is not asked: there the cosine and the sine are nearly
 # a zero and a scale by other numbers, and with a bend of any size they draw a part of any smooth
 # error. In 540 worlds of small robots that hid no such disc, six had its name, of joints that moved
-# by less (docs/robot/models.md).
+# by less (rows of benchmarks/results/robot_models.jsonl before 55c3deda).
 LEAST_TURN = 0.5
 LAG = 0.02  # [s]
 PROBE = 0.02  # of the largest plausible size

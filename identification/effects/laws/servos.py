@@ -29,9 +29,9 @@ from identification.quantities import per
 
 # Largest plausible sizes. A joint is about as fast as its limit lets it, and one of several may be
 # ten times slower than the fastest. Another voltage of the supply changes a gain by less than half.
-# The band is a part of the travel. An integral gain winds up the
-# largest force in this time, at an error that makes this force at once.
-SLOWEST, OTHER, BAND, SOONEST = 10.0, 0.5, 0.05, 0.03
+# The band is a part of the travel. An integral gain winds up the largest force in this time, at an
+# error that makes this force at once.
+SLOWEST, GAIN, BAND, SOONEST = 10.0, 0.5, 0.05, 0.03
 RATES = (0.5, 0.8, 1.1, 2.0, 4.0)  # to try, of w over one over the top speed
 BANDS = (1.0, 5.0, 20.0)
 
@@ -83,7 +83,7 @@ def servo_effects(g: Group) -> list[Effect]:
     return [
         g.force(servo_gain, "f_s + γ_p k_p e in place of f_s, e = u/γ - q",
                 "servo: another gain",
-                Size("gamma", "", OTHER, PROBE * OTHER, 0, "what its gain has more"),
+                Size("gamma", "", GAIN, PROBE * GAIN, 0, "what its gain has more"),
                 places=g.servos),
         g.force(dead_band, "f_s - k_p clip(e, ±d) in place of f_s, e = u/γ - q",
                 "servo: has a dead band",

@@ -11,9 +11,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from identification.estimation.fit import Fit
+from identification.estimation.uncertainty import share_left
 from identification.model.protocol import FINER
 from identification.quantities import quantity
 from identification.report.fit.fitted_values import first_few, matters
@@ -84,9 +83,7 @@ def free_run_steps(fit: Fit) -> list[str]:
 
 def _left(fit: Fit | RecordsFit) -> float:
     """Returns the share of the rms error that a quarter of the step leaves: 1 where all of it."""
-    if not isinstance(fit, Fit):
-        return fit.model.finer.left
-    return min(1.0, fit.step_error) if np.isfinite(fit.step_error) else 1.0
+    return share_left(fit.step_error) if isinstance(fit, Fit) else fit.model.finer.left
 
 
 def _step(fit: Fit | RecordsFit) -> float:
