@@ -129,12 +129,18 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "names no law beside a surer one that explains less than 92 % of what smooth"
         " forces of its joint could",
     ),
+    "scatter_of_noise": (
+        HORIZON, "tells an error above the noise only beyond what the noise's estimate may miss",
+    ),
     "closed_gap": (HORIZON, "names no law that closes less than half of the gap"),
     "priors_of_last_fit": (
         HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),
     "drop_doubtful": (
         HORIZON, "keeps effects that are sure where others are in doubt, and tells what is left",
+    ),
+    "curve_for_doubtful": (
+        HORIZON, "puts curves of the data in the place of effects that are all in doubt",
     ),
     "likeliest_of_set": (
         HORIZON, "asks an effect that is not the likeliest again beside what was found later, and"

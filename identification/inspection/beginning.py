@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 from identification.errors import InputError
 from identification.inspection.answers import Answer
@@ -17,6 +18,7 @@ from identification.inspection.inspected import SAID, Inspection, answers_of
 from identification.inspection.matching import BY_PLACE, SAME, match
 from identification.inspection.needs import limits_of, needs_of, unanswered
 from identification.inspection.words import answer_sentences
+from identification.logs.swing import FEWEST, part_of_swing
 from identification.logs.units import to_si
 from identification.model.scaled_servo import is_scaled_servo, scaling
 from identification.model.tied import follows
@@ -25,8 +27,6 @@ from identification.robot.file.file import RobotFile
 from identification.robot.file.model_file import robot_spec
 from identification.storage.files import exists, toml_key, toml_table, toml_value, whole_file
 
-SHORTEST = 0.3  # [s] of a horizon to begin with: a part of a swing
-FEWEST = 10  # samples of it
 SLOWEST = 0.02  # [s] between samples, above which positions hardly tell an arm's accelerations
 _DRIVES = {"position": "a position servo: its input is a setpoint",
            "velocity": "a velocity servo: its input is a setpoint"}  # fmt: skip
@@ -64,7 +64,8 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
         compiled = spec.compile()
     matches = match(channels_of(compiled), found)
     needs = [*needs_of(compiled, matches), *limits_of(spec, compiled, matches, found, model)]
-    if (lasts := float(found.time[-1] - found.time[0])) < 2 * _horizon(found):
+    if len(found.time) < 2 * FEWEST:
+        lasts = float(found.time[-1] - found.time[0])
         needs.append(
             f"the log lasts {lasts:.3g} s, {len(found.time)} rows: too short to fit one part of it"
             " and to confirm another; record some seconds of motion"
@@ -140,12 +141,18 @@ def _guesses(found: Inspection, model: mujoco.MjModel, matches: Sequence[Match])
         *columns, *units, *unanswered(found, model, matches),
         f"free = {toml_value(free)}: one number for each measured joint, and the gain of each"
         " position servo; free what you want to know",
-        f"horizon = {_horizon(found)!r} s: how far ahead the model must predict, a part of a swing",
+        f"horizon = {_horizon(found, matches)!r} s: how far ahead the model must predict, a part of"
+        " a swing",
     )  # fmt: skip
 
 
-def _horizon(found: Inspection) -> float:
-    return float(f"{max(SHORTEST, FEWEST * found.step):.2g}")
+def _horizon(found: Inspection, matches: Sequence[Match]) -> float:
+    """Returns a horizon to begin with, from the motion of the columns that outputs measure."""
+    grid = np.arange(found.time[0], found.time[-1], found.step)
+    outputs = [m.column for m in matches if not m.channel.is_input and m.column]
+    each = [np.interp(grid, found.time[rows], found.values[name][rows])
+            for name in outputs if (rows := np.isfinite(found.values[name])).any()]  # fmt: skip
+    return part_of_swing(np.reshape(each, (len(each), len(grid))).T, found.step)
 
 
 def _measured(matches: Sequence[Match]) -> list[str]:
@@ -175,7 +182,8 @@ def _lines(
         "# guessed: a number of each measured joint, the gain of each position servo; free what"
         " you want to know",
         f"free = {toml_value(_numbers_to_free(model, matches))}",
-        f"horizon = {_horizon(found)!r}  # [s], guessed: a part of a swing that it must predict",
+        f"horizon = {_horizon(found, matches)!r}  # [s], guessed: a part of a swing that it must"
+        " predict",
     ]
     if inputs or outputs:
         lines += ["", "[columns]  # actuator or sensor = column of the log"]

@@ -15,6 +15,7 @@ import numpy as np
 
 ORDER = 8
 KEPT = 0.7  # share of the differences that is used
+SCATTER = 12.0  # n var(σ̂²)/σ⁴ of `noise_floor` on n samples of white noise, by simulation
 
 
 def noise_floor(y: np.ndarray, order: int = ORDER) -> np.ndarray:

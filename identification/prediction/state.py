@@ -2,7 +2,7 @@
 
 fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict unseen records
                                    ^_____________________________________________|   again, with it
-then drop effects and places
+then drop effects and places; where all effects are in doubt, curves take their place
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from identification.prediction.moves.add_curve import add_curve
 from identification.prediction.moves.add_effect import add_effect
 from identification.prediction.moves.add_set import add_set
 from identification.prediction.moves.add_yielding_friction import add_yielding_friction
+from identification.prediction.moves.curve_for_doubtful import curve_for_doubtful
 from identification.prediction.moves.drop_doubtful import drop_doubtful
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
@@ -43,6 +44,7 @@ MOVES = (
     Move("drop_effects", finishing(drop_effects)),
     Move("drop_places", finishing(drop_places)),
     Move("drop_doubtful", drop_doubtful),
+    Move("curve_for_doubtful", curve_for_doubtful),
 )  # fmt: skip
 
 

@@ -16,8 +16,9 @@ from identification.logs.log import Log
 from identification.prediction.discovery import discover_records
 from identification.report.discovery import verdict as discovery_verdict  # noqa: F401  how the result is shown
 from identification.robot.blame import told_of_factors
-from identification.robot.file.checks import refuse_horizon, refuse_unlike
+from identification.robot.file.checks import refuse_horizon
 from identification.robot.file.file import refuse_nothing_free
+from identification.robot.horizon import with_horizon
 from identification.robot.robot import Robot
 from identification.robot.second_opinion import ask_torques, with_torques
 from identification.robot.suggestions import suggest
@@ -33,9 +34,10 @@ def discover(
 ) -> Discovery:
     """Name what a model lacks to explain a log, and prove it on the part that was not fitted.
 
-    A model with a horizon is judged by predictions over it, on the records that confirm or on the
-    second half of each log (`identification.prediction`); one without by the innovations of a
-    Kalman filter along its free run (`identification.innovations`).
+    A robot is judged by predictions over a horizon, on the records that confirm or on the second
+    half of each log (`identification.prediction`); over a part of a swing where its file gives
+    none. So is a nominal model with a horizon. One without is judged by the innovations of a Kalman
+    filter along its free run (`identification.innovations`).
 
     The result is of one kind. `found` itself shows the first sentence of its verdict;
     `discovery_text(found)` tells all of it. Read `found.verdict` first ("named", "unlisted effect",
@@ -71,8 +73,8 @@ def discover(
 
     Raises:
         InputError: log and effects are given with a robot, or are missing with a nominal model;
-            a robot without a horizon has outputs of several units; the log is too short, the
-            horizon does not fit into the unseen part, or a free parameter has no effect.
+            the log is too short, the horizon does not fit into the unseen part, or a free
+            parameter has no effect.
         DivergenceError: the nominal model cannot be simulated.
     """
     if not isinstance(model, Robot):
@@ -81,12 +83,10 @@ def discover(
         if log is not None or effects is not None:
             raise InputError("a robot has its own log and candidates; leave log and effects out")
         refuse_nothing_free(model.file)
-        if model.file.horizon is None and not model.others:
-            refuse_unlike(model.file, model.log)
-            effects = without_states(model.candidates)
-            return _written(
-                search.discover(model.nominal_model, model.log, effects, progress, options), model
-            )
+        known, model = len(model.remarks), with_horizon(model)
+        if progress is not None:
+            for remark in model.remarks[known:]:
+                progress(remark)
         fitted = (model.log, *model.others)
         for each in (*fitted, *model.records):
             refuse_horizon(model.file, each, is_whole=bool(model.records))

@@ -17,7 +17,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.estimation.metrics import fit_percent
-from identification.logs.noise import noise_floor
+from identification.logs.noise import SCATTER, noise_floor
 from identification.logs.parts import Part, Parts, inside
 from identification.model.coordinates import NOTHING
 from identification.model.predictor import Plant, Predictor
@@ -31,6 +31,8 @@ from identification.windows.windows import Windows, first_states, spread, window
 
 LENGTHS = (0.5, 1.0, 2.0)  # of the horizon, over which an effect must predict better
 HORIZON = (1.0,)  # the horizon alone
+# Of fewer records the median is the mean; of more it has this share of the efficiency of the mean.
+FEWEST_OF_MEDIAN, MEDIAN_EFFICIENCY = 3, 2 / np.pi
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +55,8 @@ class Unseen:
     places: tuple[tuple[np.ndarray, ...], ...]
     # of each record; None where all of it both decides and is told of
     parts: tuple[Parts | None, ...]
+    # from how many samples the noise is known; infinite where nobody had to estimate it
+    samples: float = np.inf
     # by record, the parameters that it has for itself: value and std of each, from the values of
     # its two halves
     own: Mapping[str, Mapping[str, tuple[float, float]]] = field(default_factory=dict)
@@ -117,6 +121,12 @@ class Unseen:
     def floor(self) -> float:
         """Mean square of the sensors' noise over all outputs, in units of s²."""
         return float(np.mean(self.noise))
+
+    @property
+    def floor_std(self) -> float:
+        """Std of the estimate of `floor`, a share of it."""
+        shares = self.noise / (np.sum(self.noise) + np.finfo(float).tiny)
+        return float(np.sqrt(SCATTER / self.samples * np.sum(shares**2)))
 
     @property
     def of_outputs(self) -> tuple[np.ndarray, ...]:
@@ -199,11 +209,17 @@ def predict(
     noise = np.median([noise_floor(r.log.outputs) for r in records], axis=0)
     found = Unseen(
         lengths=tuple(told), powers=tuple(powers), moves=tuple(moves),
-        noise=(noise / scale) ** 2, fit_percent=percent,
+        noise=(noise / scale) ** 2, samples=_samples(records), fit_percent=percent,
         places=tuple(places), parts=tuple(r.parts for r in records),
         own={r.log.name: of_halves(*h) for r, h in zip(records, halves, strict=True)},
     )  # fmt: skip
     return found if near is None or not others else near.plus(found)
+
+
+def _samples(records: Sequence[Record]) -> float:
+    """Returns how many samples a mean over records would need to tell the noise as their median."""
+    count = sum(len(r.log) for r in records)
+    return count if len(records) < FEWEST_OF_MEDIAN else count * MEDIAN_EFFICIENCY
 
 
 def cut_unseen(

@@ -13,7 +13,7 @@ from scipy.stats import chi2, kstest
 from identification import chances, fit_percent, rms
 from identification.estimation.metrics import loss
 from identification.estimation.residuals import LAGS, autocorrelation, residual_tests, whiteness
-from identification.logs.noise import noise_floor
+from identification.logs.noise import SCATTER, noise_floor
 
 
 def signal(seed, n=400, ny=3):
@@ -94,6 +94,12 @@ def test_the_noise_floor_of_a_smooth_signal_is_its_noise():
     for seed, sigma in enumerate((1e-4, 1e-2, 1.0)):
         noise = sigma * np.random.default_rng(seed).standard_normal(t.shape)
         assert noise_floor(np.sin(2 * t) + noise)[0] == pytest.approx(sigma, rel=0.1)
+
+
+def test_the_noise_floor_scatters_as_it_says():
+    rng, n = np.random.default_rng(5), 1000
+    square = noise_floor(rng.standard_normal((n, 2000))) ** 2
+    assert n * square.var() == pytest.approx(SCATTER, rel=0.1)
 
 
 def test_the_noise_floor_is_consistent():

@@ -9,8 +9,10 @@ from identification.discovery.findings.finding import FindingKind
 from identification.discovery.findings.records_evidence import ShiftedRecord
 from identification.discovery.fitted import StepShift
 from identification.discovery.options import DiscoveryOptions
+from identification.logs.noise import noise_floor
 from identification.prediction.judging.trial import CONTRADICTED, OWN_SHARE, find_rivals
 from identification.prediction.verdict import remaining
+from identification.windows.unseen import Unseen
 
 OPTIONS = DiscoveryOptions()
 LEAST = 1 + OPTIONS.min_gap_share  # rms over the noise beyond which something is left
@@ -37,7 +39,7 @@ def kinds(
     monkeypatch.setattr(remaining, "different_records", lambda *_: [])
     squares = ratio**2 * floor * np.array([0.5, 1.5])
     unseen = SimpleNamespace(
-        at_horizon=(squares[:1], squares[1:]), floor=floor, noise=np.array([floor]),
+        at_horizon=(squares[:1], squares[1:]), floor=floor, floor_std=0.0, noise=np.array([floor]),
         of_outputs=(squares[:1, None], squares[1:, None]),
     )  # fmt: skip
     state = state_of(unseen, accepted, finer=finer)
@@ -66,7 +68,7 @@ def test_an_output_that_errs_is_told_whatever_the_others_do(monkeypatch, rms, ou
     each = noise * np.array([1.0, rms**2])
     unseen = SimpleNamespace(
         at_horizon=(np.array([each.mean()]),), noise=noise, of_outputs=(each[None],),
-        floor=noise.mean(),
+        floor=noise.mean(), floor_std=0.0,
     )  # fmt: skip
     state = state_of(unseen, ("an effect",), ("x", "y"))
     (found,) = remaining.find_remaining(state, (), (), np.inf)
@@ -83,10 +85,10 @@ def test_much_is_left_where_one_output_errs_by_much(monkeypatch):
         each = noise * np.array([1.0, rms**2])
         select = SimpleNamespace(
             at_horizon=(np.array([each.mean()]),), noise=noise, of_outputs=(each[None],),
-            floor=noise.mean(),
+            floor=noise.mean(), floor_std=0.0,
         )  # fmt: skip
         steps = StepShift(np.zeros(0), np.nan)
-        told = SimpleNamespace(select=select, report=select, floor=select.floor)
+        told = SimpleNamespace(select=select, report=select, floor=select.floor, floor_std=0.0)
         model = SimpleNamespace(unseen=told, fit=None, scale=np.ones(2), finer=steps)
         assert remaining.is_much_left(model, OPTIONS) == is_much
         assert remaining.is_off(model, OPTIONS) == is_much
@@ -182,3 +184,28 @@ def test_what_was_fitted_before_the_time_limit_is_not_untried(known, monkeypatch
     )  # fmt: skip
     found = [f.evidence.score for f in remaining._untried(state)]
     assert found == ([] if known else [score])
+
+
+def is_off_by_chance(outputs, samples, without=()):
+    """How often a right model errs by more than the noise that its own log tells."""
+    rng, off = np.random.default_rng(outputs + samples), []
+    options, steps = DiscoveryOptions(without=without), StepShift(np.zeros(0), np.nan)
+    for _ in range(1000):
+        y = rng.standard_normal((samples, outputs))
+        unseen = Unseen(
+            lengths=(1.0,), powers=((np.mean(y.reshape(-1, 25, outputs) ** 2, axis=1),),), moves=(),
+            noise=noise_floor(y) ** 2, samples=samples, fit_percent=np.zeros(outputs), places=(),
+            parts=(None,),
+        )  # fmt: skip
+        model = SimpleNamespace(unseen=SimpleNamespace(report=unseen), finer=steps)
+        off.append(remaining.is_off(model, options))
+    return np.mean(off)
+
+
+@pytest.mark.parametrize(("outputs", "samples"), [(1, 250), (1, 500), (1, 2000), (6, 500)])
+def test_noise_that_is_itself_estimated_is_seldom_taken_for_an_error(outputs, samples):
+    assert is_off_by_chance(outputs, samples) < 0.06
+
+
+def test_without_its_scatter_every_fourth_short_log_has_an_error():
+    assert is_off_by_chance(1, 500, without=("scatter_of_noise",)) > 0.2

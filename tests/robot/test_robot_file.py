@@ -82,7 +82,7 @@ def test_options_of_a_file_decide(folder, tmp_path, capsys):
     head = (tmp_path / "out" / "model.xml").read_text().partition("-->")[0]
     assert "missing from this model, and bends the values" in head
     assert found["options"]["min_proof_t"] == 1e9
-    assert "doubtful effect" in [f["kind"] for f in found["findings"]]
+    assert [r["doubt"] for r in found["rejected"]] == ["chance"]
     options.write_text("min_prof_t = 2.0\n")
     said = refused(capsys, "discover", path, folder / "hidden.csv", "--options", options)
     assert "did you mean 'min_proof_t'" in said

@@ -8,7 +8,7 @@ import pytest
 from robot_cases import run
 from unlike_cases import MODEL, NOISE, TOML, TRUE, write_robot_and_logs
 
-from identification import InputError, discover, fit, read_robot
+from identification import fit, read_robot
 from identification.estimation.metrics import relative
 from identification.prediction.fits.record_errors import error_of_all, errors_by_unit
 from identification.report.fit.verdict import fit_verdict
@@ -43,12 +43,6 @@ def test_an_error_of_one_unit_is_not_hidden_by_the_other(folder):
     found = fit(read_robot(path, folder / "first.csv")).found
     assert found.rms < 1.2 * np.sqrt(np.mean(found.floor**2))
     assert "That is more than noise" in " ".join(fit_verdict(found))
-
-
-def test_a_search_along_a_free_run_is_refused(folder):
-    robot = read_robot(folder / "robot.toml", folder / "first.csv")
-    with pytest.raises(InputError, match=r"several units \(m, rad\).*horizon = 0.2"):
-        discover(robot)
 
 
 def test_relative_errors_are_the_same_in_every_unit():

@@ -17,6 +17,10 @@ only where more than `min_gap_share` is left above the sensors' noise; that of a
 inputs would also have to err by more than `max_input_error`. One output may err while the
 others do not, and the mean over all outputs then hides it. So an output also counts by itself,
 where its error is more than `MAX_OUTPUT_RATIO` times its noise.
+
+The noise is itself estimated, by the differences of a few hundred samples to a tenth or two of its
+mean square. A right model would err by more than such an estimate in every fourth short log. So
+what is left also counts only beyond what 95 % of these estimates would miss.
 """
 
 from __future__ import annotations
@@ -58,6 +62,7 @@ from identification.windows.unseen import Unseen
 INPUT_STEP = 1e-3  # of an input's rms, by which it is moved
 # Of an output's error to its noise, which its own differences tell to a tenth or two.
 MAX_OUTPUT_RATIO = 1.5
+SURE = 1.645  # std, above which 5 % of normal numbers lie
 # Of a record's rms error to that of the others: beyond it, and beyond chance, it is reported.
 DIFFERENT_RECORD_RATIO = 2.0
 MIN_COMPARED_RECORDS = 3  # of two, only that they differ is known, and not which one is wrong
@@ -139,7 +144,8 @@ def _error_left(state: WindowSearch) -> RemainingError | None:
     worst, of = int(np.argmax(ratios)), tuple(r.log.name for r in state.task.confirm)
     if len(names) > 1 and ratios[worst] > max(MAX_OUTPUT_RATIO, ratio):
         return RemainingError(float(ratios[worst]), names[worst], of)
-    return RemainingError(ratio, records=of) if ratio > 1 + options.min_gap_share else None
+    most = 1 + options.min_gap_share + missed_noise(unseen, options) / 2  # of a root of squares
+    return RemainingError(ratio, records=of) if ratio > most else None
 
 
 def is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
@@ -147,7 +153,13 @@ def is_off(model: WindowModel, options: DiscoveryOptions) -> bool:
     unseen, share = model.unseen.report, left_by_steps(model)
     square = float(np.mean(np.concatenate(unseen.at_horizon))) * share**2
     is_one_off = share * output_ratios(unseen).max() > MAX_OUTPUT_RATIO
-    return is_one_off or square > unseen.floor * (1 + options.min_gap_share)
+    most = 1 + options.min_gap_share + missed_noise(unseen, options)
+    return is_one_off or square > unseen.floor * most
+
+
+def missed_noise(unseen: Unseen, options: DiscoveryOptions) -> float:
+    """Returns by how much the noise may be estimated too small, a share of its mean square."""
+    return SURE * unseen.floor_std if uses(options, "scatter_of_noise") else 0.0
 
 
 def left_by_steps(model: WindowModel) -> float:

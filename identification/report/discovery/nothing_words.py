@@ -26,7 +26,8 @@ def _is_above_sensors(found: Discovery) -> bool:
     """Tells whether it is more than sensors make, where nothing else is known to disturb."""
     ratio = found.before.rms / found.noise_rms if found.noise_rms else 1.0
     is_noise = found.unlogged is not None or found.input_error < NO_ERROR
-    return not is_noise and ratio**2 > 1 + found.options.min_gap_share
+    is_more = ratio**2 > 1 + found.options.min_gap_share
+    return not is_noise and is_more and found.unexplained
 
 
 def errors_left(found: Discovery) -> tuple[str, str, str]:

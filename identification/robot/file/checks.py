@@ -115,22 +115,6 @@ def refuse_short(log: Log, path: Path) -> None:
         )
 
 
-def refuse_unlike(file: RobotFile, log: Log) -> None:
-    """Refuse to search along a free run what outputs of several units lack.
-
-    Such a search has one noise for all outputs, so that those with the smaller numbers count for
-    nothing, and what they lack is called by another name.
-    """
-    units = {log.units.get(name, "") or "none" for name in log.output_names}
-    if len(units) > 1:
-        raise InputError(
-            f"the outputs have several units ({', '.join(sorted(units))}), and a search along the"
-            f" free run has one noise for all of them; write a horizon into {file.path}, such as"
-            " horizon = 0.2 (in seconds; a good part of one swing), over which each output counts"
-            " in its own scale"
-        )
-
-
 def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: Path) -> None:
     """Refuse a log with so many model steps per sample that its time cannot be in seconds."""
     h, step = log.sampling_time, float(model.opt.timestep)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from identification.discovery.result import Discovery, collect_final_values, keep_of_robot
+from identification.discovery.result import Discovery, keep_of_robot
 from identification.effects.plant.jointed import JointPlant
 from identification.errors import InputError, refuse_kind
 from identification.estimation.metrics import rms_by_unit
@@ -32,9 +32,7 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
     These are the records that confirm, or, where there are none, the unseen part of each log.
 
     For a fit the two models have the values of the robot's file and the fitted values. For a
-    discovery that names something they are the fitted model without the named effects and the one
-    with them. For any other discovery they have the values of the file and the fitted values. A
-    discovery over a horizon has compared the records already.
+    discovery they are the fitted model without the named effects and the one with them.
 
     Args:
         robot: the result of `read_robot`, with the records that confirm, if there are any.
@@ -53,13 +51,8 @@ def confirm(robot: Robot, found: RobotFit | Discovery) -> tuple[Confirmation, ..
     if isinstance(found, RobotFit):
         if found.found.horizon is not None:
             return _over_windows(robot, found, found.found)
-        return _over_free_run(robot, {}, found.values, begun=found.begun)
-    if found.horizon is not None:
-        return _of_discovery(robot, found)
-    after, told = collect_final_values(found), None if found.run is None else found.run.told
-    if not found.named:
-        return _over_free_run(robot, {}, after, told=told)
-    return _over_free_run(robot, found.nominal.values, after, WITHOUT, told)
+        return _over_free_run(robot, found.values, found.begun)
+    return _of_discovery(robot, found)
 
 
 def compare_values(
@@ -74,30 +67,22 @@ def compare_values(
 
 
 def _over_free_run(
-    robot: Robot,
-    before: Mapping[str, float],
-    after: Mapping[str, float],
-    models: tuple[str, str] = (AS_WRITTEN, FITTED),
-    told: np.ndarray | None = None,
-    begun: State | None = None,
+    robot: Robot, values: Mapping[str, float], begun: State | None
 ) -> tuple[Confirmation, ...]:
-    """Compares two sets of values on the records, or on the unseen part of the only log.
+    """Compares fitted values with those of the file on the records, or on the rest of the only log.
 
-    Of what is unseen only the samples `told` count, (N,), on which a search has not decided. On the
-    only log, the values `after` go with the initial state `begun` that was estimated with them.
+    On the only log, the fitted values go with the initial state that was estimated with them.
     """
     if not robot.records:
         log, part = robot.log, robot.log.part("validation")
         rows, given = np.isin(log.time, part.time), robot.values_of(log)
-        if told is not None and len(told) == len(rows):
-            rows = told
         errors = [
-            _free_run(robot, log, {**values, **given}, start)[rows]
-            for values, start in ((before, None), (after, begun))
+            _free_run(robot, log, {**known, **given}, start)[rows]
+            for known, start in (({}, None), (values, begun))
         ]
-        return (_compared(part, errors, models),)
-    kept = keep_of_robot(after, robot.plant.effects)
-    return tuple(compare_values(robot, log, before, kept, models) for log in robot.records)
+        return (_compared(part, errors, (AS_WRITTEN, FITTED)),)
+    kept = keep_of_robot(values, robot.plant.effects)
+    return tuple(compare_values(robot, log, {}, kept) for log in robot.records)
 
 
 def _over_windows(robot: Robot, fit: RobotFit, found: RecordsFit) -> tuple[Confirmation, ...]:

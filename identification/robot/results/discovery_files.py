@@ -9,7 +9,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from identification.quantities import plain
 from identification.report.discovery.json import discovery_to_json
 from identification.report.discovery.missing_place import find_place
 from identification.report.discovery.named_words import set_words
@@ -18,9 +17,8 @@ from identification.report.discovery.report import DiscoveryFiles
 from identification.report.discovery.straight_curves import force_ranges
 from identification.report.page.page import Section
 from identification.robot.reading import doubtful
-from identification.robot.results.confirmation import confirm
 from identification.robot.results.mjcf import write_mjcf
-from identification.robot.results.record_error import Confirmation, Repetition, find_repetitions
+from identification.robot.results.record_error import Repetition, find_repetitions
 from identification.robot.results.unexplained import Unexplained, find_unexplained
 from identification.robot.results.write import write_robot
 from identification.robot.robot import Robot
@@ -54,14 +52,13 @@ class RobotDiscoveryFiles(DiscoveryFiles):
                 *(u.finding for u in self._unexplained),
                 *(r.finding for r in repeated),
             ],
-            "confirm": plain(self._confirmed),
             "remarks": list(self.robot.remarks),
         }
 
     @cached_property
     def sentences(self) -> Sequence[str]:
         """The sentences behind the verdict."""
-        behind = (*self._unexplained, *self._confirmed, *self._repeated)
+        behind = (*self._unexplained, *self._repeated)
         return [*doubtful(self.robot), *map(str, behind)]
 
     def keep(self, folder: Path, place: Path) -> dict[str, Any]:
@@ -111,11 +108,6 @@ class RobotDiscoveryFiles(DiscoveryFiles):
         )
         fitted = 1 + len(self.robot.others)
         return own_stub(at, robot, logs[:fitted], logs[fitted:])
-
-    @cached_property
-    def _confirmed(self) -> Sequence[Confirmation]:
-        """Errors on the records; over a horizon the report has those of every record already."""
-        return confirm(self.robot, self.found) if self.found.horizon is None else ()
 
     @cached_property
     def _unexplained(self) -> Sequence[Unexplained]:
