@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs.bracketed import with_bracketed
 from identification.logs.formats.formats import log_table, refuse_no_log
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
@@ -39,6 +40,9 @@ from identification.logs.table import (
 from identification.logs.units import check_si
 from identification.logs.wrapped import without_wraps
 from identification.storage.files import readable
+
+# Columns of time whose stamps may need more digits than a float has.
+STAMPS = ("time", "time [ns]", "time (ns)", "time [us]", "time (us)")
 
 
 def read_log(
@@ -110,10 +114,12 @@ def read_log(
         path,
         wanted_columns({"time", *columns}, sidecar) if lenient else None,
         header=sidecar.header,
-        stamps={"time", *(old for old, new in sidecar.columns.items() if new == "time")},
+        stamps={*STAMPS, *(old for old, new in sidecar.columns.items() if new == "time")},
         asked=[olds.get(name, name) for name in (*inputs, *measured)],
         of_matlab=(inputs, measured, optional),
     )
+    if lenient:
+        table, sidecar = with_bracketed(table, {"time", *columns}, sidecar)
     for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",

@@ -19,6 +19,7 @@ from decimal import Decimal
 import numpy as np
 
 from identification.errors import InputError
+from identification.logs.bracketed import bracketed
 from identification.logs.cures import lines_of
 from identification.logs.names import quoted
 from identification.logs.sampling import FloatArray
@@ -129,7 +130,8 @@ def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]
 
     def wanted(names: Sequence[str]) -> set[str]:
         pair = stamps_apart([to.get(n, n) for n in names], sidecar) or ()
-        return {n for n in names if to.get(n, n) in {*asked, *pair}}
+        in_brackets = bracketed(names, asked, sidecar)
+        return {n for n in names if to.get(n, n) in {*asked, *pair} or n in in_brackets}
 
     return wanted
 

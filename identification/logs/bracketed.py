@@ -1,0 +1,63 @@
+"""Columns that bear their unit behind their name: `time [s]`, `angle (deg)`.
+
+Exports of spreadsheets and of measuring programs write names so. Where a log has no column of a
+name that is asked for, the column of that name with a known unit in brackets is it, in this unit.
+What the log's TOML says of columns and units comes before.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+
+from identification.logs.names import listed, lookup
+from identification.logs.sidecar import Sidecar
+from identification.logs.table import Table
+from identification.logs.units import UNITS
+
+_BRACKETED = re.compile(r"(?P<name>[^\[(]+?)\s*[\[(]\s*(?P<unit>[^\])]+?)\s*[\])]")
+
+
+def bracketed(
+    names: Sequence[str], asked: Collection[str], sidecar: Sidecar
+) -> Mapping[str, tuple[str, str]]:
+    """Returns name and unit of each column of a file that bears both, and is asked for.
+
+    Args:
+        names: of the columns of the file.
+        asked: names of the columns that are read.
+        sidecar: what the log's TOML says.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    known = {*(sidecar.columns.get(n, n) for n in names)}
+    for column in names:
+        match = _BRACKETED.fullmatch(column)
+        if match is None or column in known & {*asked} or column in sidecar.columns:
+            continue
+        name, unit = sidecar.columns.get(match["name"], match["name"]), match["unit"]
+        if name in {*asked} - known and unit in UNITS:
+            found[column] = (name, unit)
+            known.add(name)
+    return found
+
+
+def with_bracketed(table: Table, asked: Collection[str], sidecar: Sidecar) -> tuple[Table, Sidecar]:
+    """Returns a table that tells which columns are so, and what its TOML then would say of them.
+
+    Args:
+        table: as it stands in its file.
+        asked: names of the columns that are read.
+        sidecar: what the log's TOML says.
+    """
+    found = bracketed(table.all_names, asked, sidecar)
+    if not found:
+        return table, sidecar
+    units = {n: unit for n, unit in found.values() if lookup(sidecar.units, n) is None}
+    columns = {column: name for column, (name, _) in found.items()}
+    others = {old: new for old, new in sidecar.columns.items() if new not in columns.values()}
+    told = table.told(
+        f"Columns {listed(columns)} of log {table.path.stem!r} are read as"
+        f" {listed(columns.values())}, in the units that stand in brackets."
+    )
+    return told, replace(sidecar, columns={**others, **columns}, units={**sidecar.units, **units})

@@ -1,0 +1,67 @@
+"""A column that bears its unit in brackets is read by its name, in this unit."""
+
+import numpy as np
+import pytest
+
+from identification.errors import InputError
+from identification.logs.read import read_log
+
+TIME = 0.01 * np.arange(200)
+
+
+def read(folder, head, toml="", scale=(1.0, 1.0, 1.0), lenient=True):
+    rows = np.column_stack([TIME, np.sin(TIME), np.cos(TIME)]) * scale
+    np.savetxt(folder / "log.csv", rows, "%.12g", ",", header=head, comments="")
+    if toml:
+        (folder / "log.toml").write_text(toml)
+    return read_log(folder / "log.csv", ["u"], ["q"], lenient=lenient, units={"q": "rad"})
+
+
+@pytest.mark.parametrize(("head", "scale"), [
+    ("time [s],u [V],q [rad]", (1, 1, 1)),
+    ("time (ms),u,q [deg]", (1e3, 1, 180 / np.pi)),
+    ("time[s],u(V),q (rev)", (1, 1, 0.5 / np.pi)),
+    ('"time [ns]","u [mA]","q [mrad]"', (1e9, 1e3, 1e3)),
+])  # fmt: skip
+def test_the_log_is_the_same_as_in_si(tmp_path, head, scale):
+    log = read(tmp_path, head, scale=scale)
+    np.testing.assert_allclose(log.time, TIME, atol=1e-9)
+    np.testing.assert_allclose(log.inputs[:, 0], np.sin(TIME), atol=1e-9)
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME), atol=1e-9)
+    assert "in the units that stand in brackets" in " ".join(log.remarks)
+
+
+def test_what_the_toml_says_comes_before(tmp_path):
+    log = read(tmp_path, "time [s],u,q [rad]", '[units]\nq = "deg"\n')
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME) * np.pi / 180, atol=1e-9)
+    mapped = '[columns]\n"q [deg]" = "q"\n'
+    log = read(tmp_path, "time [s],u,q [deg]", mapped)
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME), atol=1e-9)
+
+
+def test_a_column_that_the_toml_names_without_its_unit_is_found(tmp_path):
+    log = read(tmp_path, "t [s],u,pos [deg]", '[columns]\nt = "time"\npos = "q"\n')
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME) * np.pi / 180, atol=1e-9)
+
+
+@pytest.mark.parametrize("head", [
+    "time,u,q [counts]",  # nobody knows this unit
+    "time,u,joint q [rad]",
+    "time,u,q [rad] filtered",
+])  # fmt: skip
+def test_any_other_name_is_refused_as_before(tmp_path, head):
+    with pytest.raises(InputError, match="lacks column q"):
+        read(tmp_path, head)
+
+
+def test_a_column_of_the_very_name_is_taken(tmp_path):
+    rows = np.column_stack([TIME, np.sin(TIME), np.cos(TIME), 7 + TIME])
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header="time,u,q,q [deg]", comments="")
+    log = read_log(tmp_path / "log.csv", ["u"], ["q"], lenient=True)
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME), atol=1e-9)
+    assert not log.remarks
+
+
+def test_a_strict_reader_keeps_to_the_letter(tmp_path):
+    with pytest.raises(InputError, match="lacks columns time"):
+        read(tmp_path, "time [s],u [V],q [rad]", lenient=False)
