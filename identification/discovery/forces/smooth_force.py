@@ -72,20 +72,31 @@ def find_smooth_force(G: np.ndarray, a: np.ndarray, nodes: Sequence[int]) -> Smo
             c[:, has] = np.linalg.solve(H[:, has][:, :, has] + R, b[:, has, None])[..., 0]
         return c
 
-    def gain(ridges: np.ndarray) -> float:
-        c = fitted(others, theirs, ridges)
-        return float(np.sum(2 * mine * c) - np.einsum("fi,fij,fj->", c, own, c, optimize=True))
+    def gains_of(k: int, ridges: np.ndarray) -> np.ndarray:
+        """Returns the gain by each ρ_k of RIDGES beside those of the other curves, shape (P,)."""
+        felt = diagonal > 0
+        at, rest = felt & (of == k), felt & (of != k) & np.isfinite(ridges[of])
+        if not at.any():
+            return np.zeros(len(RIDGES))
+        A = others[:, rest][:, :, rest] + np.diag(ridges[of[rest]] * h[of[rest]])
+        B = others[:, rest][:, :, at]
+        X = np.linalg.solve(A, np.concatenate([B, theirs[:, rest, None]], axis=2))
+        X, x = X[..., :-1], X[..., -1:]  # A⁻¹B, A⁻¹b
+        λ, Q = np.linalg.eigh(others[:, at][:, :, at] - B.transpose(0, 2, 1) @ X)
+        z = Q.transpose(0, 2, 1) @ (theirs[:, at, None] - B.transpose(0, 2, 1) @ x)
+        c = np.zeros((*theirs.shape, len(RIDGES)))
+        c[:, at] = Q @ (z / (λ[..., None] + h[k] * np.array(RIDGES)))  # zero for an infinite ρ
+        c[:, rest] = x - X @ c[:, at]
+        return np.asarray(np.sum(c * (2 * mine[..., None] - own @ c), axis=(0, 1)))
 
     best = np.full(len(nodes), np.inf)
     most = 0.0
     for _ in range(MAX_SWEEPS):
         before = most
         for k in range(len(nodes)):
-            for ρ in RIDGES:
-                tried = best.copy()
-                tried[k] = ρ
-                if (found := gain(tried)) > most:
-                    best, most = tried, found
+            tried = gains_of(k, best)
+            if tried.max() > most:
+                best[k], most = RIDGES[int(tried.argmax())], float(tried.max())
         if not most > before:
             break
     gains, left_out = np.zeros(len(a)), fitted(others, theirs, best)
