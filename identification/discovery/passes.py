@@ -58,6 +58,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "weak_scores": (
         HORIZON, "refits effects whose scores may be luck, because unseen records decide",
     ),
+    "scores_of_much_left": (
+        HORIZON, "refits effects by their own chance, not that of all, where much is left",
+    ),
     "proof_by_both_roles": (
         HORIZON, "proves the likeliest law by blocks of fitted records too, as fits of the others"
         " predict them",

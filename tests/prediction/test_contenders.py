@@ -116,6 +116,16 @@ def test_where_something_is_missing_a_weak_law_is_refitted_and_without_the_pass_
     assert list_contenders([weak, *others, *others], OPTIONS) == []
 
 
+def test_where_much_is_left_a_weak_law_is_refitted_though_no_score_is_beyond_chance():
+    weak = score(effect("law"), 0.5, p_value=0.005)
+    scores = [weak, *(score(effect(f"e{k}"), 0.1, p_value=0.5) for k in range(300))]
+    assert list_contenders(scores, OPTIONS, is_left=False) == []
+    assert list_contenders(scores, OPTIONS, is_left=True) == [weak]
+    for name in ("scores_of_much_left", "weak_scores"):
+        strict = DiscoveryOptions(without=(name,))
+        assert list_contenders(scores, strict, is_left=True) == []
+
+
 def test_laws_that_are_there_or_not_are_fitted_whatever_their_scores_are():
     whole = replace(Size("c", "", 1.0, 0.02, 1), present=1.0)
     limit = replace(effect("limit"), sizes=(whole,))

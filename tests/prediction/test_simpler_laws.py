@@ -55,7 +55,7 @@ def test_the_simpler_laws_of_a_curve_are_those_of_its_joint_and_begin_where_it_e
     effects = listed("hardening", "offset", "curve_position", "delay")
     scores = window_scores(bare.fit, list_common(effects))
     best = SimpleNamespace(model=curved, candidate=curved.candidates[-1])
-    there, simpler = simpler_laws(bare, best, scores, DiscoveryOptions())
+    there, simpler = simpler_laws(bare, best, scores, DiscoveryOptions(), False)
     assert simpler[0].candidate.effect.name == "hardening"
     assert {s.candidate.effect.name for s in simpler} <= {"hardening", "offset"}
     assert there.values["J"] == pytest.approx(curved.values["J"], rel=1e-9)

@@ -18,8 +18,9 @@ MAX_CHANCE = 0.05  # of a score, above which its effect is not refitted however 
 
 
 def list_contenders(
-    scores: Sequence[WindowScore], options: DiscoveryOptions, are_curves: bool = False
-) -> list[WindowScore]:
+    scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False,
+    are_curves: bool = False,
+) -> list[WindowScore]:  # fmt: skip
     """Returns the few best scores beyond chance, with the best shape of each effect at each place.
 
     They are fitted to some windows, and the best of them to all: a score is linear, and what is
@@ -29,10 +30,11 @@ def list_contenders(
     Args:
         scores: of all candidates, the best first.
         options: what is beyond chance, and how many are refitted.
+        is_left: as `refit_level`.
         are_curves: whether curves of the data are asked, or laws.
     """
     some = [s for s in scores if s.candidate.effect.is_curve == are_curves]
-    found = _best_few(some, refit_level(scores, options), options)
+    found = _best_few(some, refit_level(scores, options, is_left), options)
     return found[:MAX_CURVES] if are_curves else found
 
 
@@ -89,7 +91,9 @@ def _level_among(scores: Sequence[WindowScore], options: DiscoveryOptions) -> fl
     return options.significance / max(1, len(scores))
 
 
-def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> float:
+def refit_level(
+    scores: Sequence[WindowScore], options: DiscoveryOptions, is_left: bool = False
+) -> float:
     """Returns the chance below which the effect of a score is refitted.
 
     A refit is no proof, for unseen records decide, and a score about a model from which something
@@ -101,10 +105,12 @@ def refit_level(scores: Sequence[WindowScore], options: DiscoveryOptions) -> flo
     Args:
         scores: of all candidates.
         options: what is beyond chance.
+        is_left: whether much is left of the error of the model that was scored.
     """
     if not uses(options, "weak_scores"):
         return _level_among(scores, options)
-    is_missing = bool(beyond_chance(scores, options))
+    is_missing = is_left and uses(options, "scores_of_much_left")
+    is_missing = is_missing or bool(beyond_chance(scores, options))
     return options.significance if is_missing else min(MAX_CHANCE, 1.0 / max(1, len(scores)))
 
 

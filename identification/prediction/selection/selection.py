@@ -26,7 +26,8 @@ from identification.prediction.scoring.contenders import (
     list_contenders,
     list_limits,
     list_starts,
-)
+    refit_level,
+)  # fmt: skip
 from identification.prediction.scoring.first_fit import Begun, begin
 from identification.prediction.scoring.scores import WindowScore, window_scores
 from identification.prediction.scoring.screening import has_what_it_needs
@@ -72,10 +73,12 @@ def refit_contenders(
     Returns:
         The model without them, its windows at the best states that any of them found, and they.
     """
-    chosen = list_contenders(scores, options, are_curves)
-    # what is left is simulated only where something depends on it
+    is_weak = refit_level(scores, options) < options.significance
     is_far = not are_curves and output_ratios(model.unseen.select).max() > MIN_LIMITED_RATIO
-    if is_far and uses(options, "limits_of_much_left") and is_much_left(model, options):
+    # what is left is simulated only where something depends on it
+    is_much = (is_weak or is_far) and is_much_left(model, options)
+    chosen = list_contenders(scores, options, is_much, are_curves)
+    if is_far and is_much and uses(options, "limits_of_much_left"):
         chosen += list_limits(scores, chosen)
     if uses(options, "suggested_effects"):
         has = {*(s.candidate.key for s in chosen), *(c.key for c in model.candidates)}
@@ -134,7 +137,7 @@ def refit_contenders(
     if better and not is_late and uses(options, "simpler_laws"):
         # Chance is not paid for these laws: they are asked only where a richer one has passed.
         best = max(better, key=lambda c: (c.is_proven, c.criterion))
-        there, simpler = simpler_laws(parent, best, scores, options)
+        there, simpler = simpler_laws(parent, best, scores, options, is_much)
         known = {c.candidate.key for c in proven}
         rest = [s for s in simpler if s.candidate.key not in known]
         more = refit(_begun(there, rest, simpler, options))

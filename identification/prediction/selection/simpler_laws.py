@@ -29,7 +29,7 @@ MAX_SIMPLER_LAWS = 2  # with fewer numbers, refitted beside the best one
 
 def simpler_laws(
     parent: WindowModel, best: Contender, scores: Sequence[WindowScore],
-    options: DiscoveryOptions,
+    options: DiscoveryOptions, is_left: bool,
 ) -> tuple[WindowModel, list[WindowScore]]:  # fmt: skip
     """Returns laws with fewer numbers that act as the best one does, and the model to begin at.
 
@@ -42,10 +42,11 @@ def simpler_laws(
         best: the best effect.
         scores: of all candidates, on the parent.
         options: what is beyond chance.
+        is_left: as `refit_level`.
     """
     there = attempt(None, partial(at_values_of, parent, best.model)) or parent
     simpler = window_scores(there.fit, simpler_than(best.candidate, scores))
-    return there, list_simpler(simpler, scores, options)
+    return there, list_simpler(simpler, scores, options, is_left)
 
 
 def is_dear(c: Contender, refits: int, options: DiscoveryOptions) -> bool:
@@ -79,17 +80,19 @@ def _way_of(c: Candidate) -> frozenset[str]:
 
 
 def list_simpler(
-    simpler: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions
-) -> list[WindowScore]:
+    simpler: Sequence[WindowScore], scores: Sequence[WindowScore], options: DiscoveryOptions,
+    is_left: bool = False,
+) -> list[WindowScore]:  # fmt: skip
     """Returns the best scores of laws that are simpler than the winner.
 
     Args:
         simpler: scores of the laws, the best first.
         scores: of all candidates.
         options: what is beyond chance.
+        is_left: as `refit_level`.
     """
     each: dict[str, WindowScore] = {}
-    level = refit_level(scores, options)
+    level = refit_level(scores, options, is_left)
     for s in simpler:
         if is_significant(s, level, options) and is_plausible(s, options):
             each.setdefault(s.candidate.effect.name, s)
