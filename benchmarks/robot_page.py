@@ -108,6 +108,12 @@ def _has_unlisted(row: Row) -> bool:
     return any(effect in UNLISTED for effect, _ in _hidden(row))
 
 
+def _is_drawn(row: Row) -> bool:
+    """Returns whether a curve of the data is told at the joint of what is hidden."""
+    at = f"joint {row['joint']}"
+    return any(n["name"].startswith(CURVE) and n["where"] == at for n in row.get("named") or [])
+
+
 def _names_two(row: Row) -> bool:
     """Returns whether at least two of what is hidden are named, each at its joint."""
     each = [(n["name"], n["where"]) for n in row.get("named") or []]
@@ -211,6 +217,7 @@ MEASURES: Sequence[tuple[str, Callable[[Row], bool], Callable[[Row], bool]]] = (
      lambda r: "+" in r["effect"] and not _has_unlisted(r), _names_two),
     ("a law is named that is not there", lambda r: True, is_wrong),
     ("a force of no catalogue is drawn, or unknown", lambda r: r["effect"] in UNLISTED, is_right),
+    ("it is drawn, at its joint", lambda r: r["effect"] in UNLISTED, _is_drawn),
     ("the same beside an effect of the catalogue, which may be named",
      lambda r: "+" in r["effect"] and _has_unlisted(r), is_right),
     ("nothing is named where nothing is missing, or nothing that has a name",

@@ -22,6 +22,7 @@ from identification.report.discovery.straight_curves import (
     line_of_named,
     lines_needed,
 )
+from identification.report.discovery.unseen_motion import unseen_motion
 from identification.report.fit.untold_words import bound_sentences
 from identification.report.torques.opinion_words import opinion_sentences
 from identification.report.words.effects import (
@@ -185,6 +186,7 @@ def _unknown(found: Discovery) -> list[str]:
             f" unseen data{unseen_of(found)} is {left}{found.over}{times}{needed}.",
             "The program gives no name rather than a wrong one.",
         ],
+        unseen_motion(found),
         [*_likeliest_sentences(found), *_doubtful(found)],
         [
             *place,
