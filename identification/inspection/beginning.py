@@ -22,6 +22,7 @@ from identification.logs.swing import FEWEST, part_of_swing
 from identification.logs.units import to_si
 from identification.model.scaled_servo import is_scaled_servo, scaling
 from identification.model.tied import follows
+from identification.robot.file.checks import refuse_same_stem
 from identification.robot.file.completed import positions_without_sensor, torques_without_motor
 from identification.robot.file.file import RobotFile
 from identification.robot.file.model_file import robot_spec
@@ -57,6 +58,7 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
         raise InputError(
             f"{path} exists, and nothing of yours is replaced; give another name behind --robot"
         )
+    refuse_same_stem(file, found.path)
     compiled = spec.compile()
     added = _motors(spec, compiled, found) | _sensors(spec, compiled, found)
     if added:

@@ -46,6 +46,7 @@ class Log:
         unread: columns of its file that nobody asked for, and that were not read.
         gaps: where nothing was measured and samples are made up that may be wrong: begin and end of
             each [s]; windows that touch one are left out.
+        said_units: units of the numbers in its file, by column, where something says them.
         factors: what its TOML multiplied columns with beside their units, by column.
         zeros: what its TOML takes off columns, in their units, by column.
         splits: named parts [start, end) [s], such as estimation and validation.
@@ -73,6 +74,7 @@ class Log:
     values: Mapping[str, float] = field(default_factory=dict)
     begun: float = 0.0
     remarks: tuple[str, ...] = ()
+    said_units: Mapping[str, str] = field(default_factory=dict)
     factors: Mapping[str, float] = field(default_factory=dict)
     zeros: Mapping[str, float] = field(default_factory=dict)
     gaps: tuple[tuple[float, float], ...] = ()

@@ -187,6 +187,7 @@ def read_log(
         remarks=table.remarks,
         unread=tuple(n for n in table.unread if n not in sidecar.ignore),
         gaps=gaps,
+        said_units={n: u for n in table.names if (u := lookup(sidecar.units, n)) is not None},
         factors=_given(sidecar.factors, table),
         zeros={n: zero * factors[n] for n, zero in _given(sidecar.zeros, table).items()},
     )

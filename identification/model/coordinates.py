@@ -89,7 +89,8 @@ def coordinates(
             raise InputError(
                 f"the start of {record.name} = {value:g} {record.unit}".rstrip()
                 + f" must lie inside ({record.lower:g}, {record.upper:g}); a search that starts"
-                " on a bound stays there"
+                " on a bound stays there. Give it a value inside, in a robot's file as"
+                f' [parameters."{record.name}"] with value = ...'
             )
     logarithmic = np.array(
         [r.lower >= 0 and v > 0 and r.name not in linear

@@ -106,7 +106,7 @@ def _refuse_few(unseen: Unseen, horizon: float) -> None:
     windows = [len(s) for s in unseen.at_horizon]
     if sum(map(count_blocks, windows)) < FEWEST_BLOCKS:
         raise InputError(
-            f"the records that confirm hold {sum(windows)} windows of {horizon:g} s, too few to"
-            f" prove anything; give at least {2 * FEWEST_BLOCKS} windows, by longer records or a"
-            " shorter horizon"
+            f"what confirms, other records or the second half of each log, holds {sum(windows)}"
+            f" windows of {horizon:g} s, too few to prove anything; give at least"
+            f" {2 * FEWEST_BLOCKS} windows, by longer records or a shorter horizon"
         )

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, combinations, product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -98,13 +99,14 @@ def unit_readings(
     """
     log, wanted, ny = doubt.log, wanted or {}, len(doubt.bad)
     names = [*log.output_names, *(n for n in log.input_names if n in wanted)]
-    kinds = [(log.units.get(n, ""), False) for n in names[:ny]]
-    kinds += [(wanted[n], not together) for n in names[ny:]]
+    kinds = [_Kind(si := log.units.get(n, ""), log.said_units.get(n, si)) for n in names[:ny]]
+    kinds += [_Kind(wanted[n], log.said_units.get(n, wanted[n]), not together) for n in names[ny:]]
     for words in _units(kinds, alone):
         changed = [k for k, word in enumerate(words) if word]
         if not all(doubt.bad[k] for k in changed if k < ny):
             continue
-        scale = {n: UNITS[word][1] for n, word in zip(names, words, strict=True) if word}
+        each = zip(names, words, kinds, strict=True)
+        scale = {n: UNITS[word][1] / kind.factor for n, word, kind in each if word}
         other = replace(
             log,
             outputs=log.outputs * [scale.get(n, 1.0) for n in log.output_names],
@@ -119,11 +121,11 @@ def unit_readings(
 def input_unit_readings(doubt: Doubt, units: Mapping[str, str]) -> Iterator[Reading]:
     """Yields other units of the inputs that drives turn into forces, all of a kind at once."""
     log = doubt.log
-    for si, word in ((si, w) for si in dict.fromkeys(units.values()) for w in UNITS):
-        if UNITS[word][0] != si or word == si:
-            continue
-        some = [n for n in log.input_names if units.get(n) == si]
-        scale = [UNITS[word][1] if n in some else 1.0 for n in log.input_names]
+    kinds = {n: _Kind(si, log.said_units.get(n, si)) for n, si in units.items()}
+    every = dict.fromkeys(kinds.values())
+    for kind, word in chain.from_iterable(product([kind], kind.others) for kind in every):
+        some = [n for n in log.input_names if kinds.get(n) == kind]
+        scale = [UNITS[word][1] / kind.factor if n in some else 1.0 for n in log.input_names]
         lines = unit_lines({doubt.column[n]: word for n in some})
         other = replace(log, inputs=log.inputs * scale)
         yield Reading(other, doubt.wrong, f"were its inputs in {word}", lines, ("units",))
@@ -234,10 +236,28 @@ def _both(first: Reading, turn: Reading, then: str, log: Log) -> Reading:
     )  # fmt: skip
 
 
-def _units(columns: Sequence[tuple[str, bool]], alone: bool) -> Iterator[tuple[str, ...]]:
+class _Kind(NamedTuple):
+    """What columns have in common that may be in another unit together."""
+
+    si: str  # their SI unit
+    said: str  # that of the numbers in the log's file, as it was read
+    is_wanted: bool = False  # whether they are set points, and not measured
+
+    @property
+    def factor(self) -> float:
+        """From the numbers in the log's file to SI, as they were read."""
+        return UNITS[self.said][1] if self.said else 1.0
+
+    @property
+    def others(self) -> list[str]:
+        """Units in which the numbers might be instead."""
+        return [w for w, (of, _) in UNITS.items() if of == self.si and w != self.said]
+
+
+def _units(columns: Sequence[_Kind], alone: bool) -> Iterator[tuple[str, ...]]:
     """Yields other units of columns, "" for as it is: of all of a kind, and of one alone."""
     kinds = [*dict.fromkeys(columns)]
-    words = {k: ["", *(w for w, (of, _) in UNITS.items() if of == k[0] != w)] for k in kinds}
+    words = {kind: ["", *kind.others] for kind in kinds}
     for chosen in product(*(words[kind] for kind in kinds)):
         if any(chosen):
             yield tuple(chosen[kinds.index(kind)] for kind in columns)

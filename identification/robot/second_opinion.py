@@ -44,7 +44,7 @@ def ask_torques(
     except InputError as error:  # they need more than a search over windows does
         return error
     if progress is not None:
-        named = ", ".join(s.missing.title for s in evidence.named) or "nothing"
+        named = ", ".join(s.missing.title for s in evidence.named) or "nothing but friction"
         progress(f"the torques of the joints name {named}")
     return evidence
 

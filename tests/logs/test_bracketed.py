@@ -31,11 +31,26 @@ def test_the_log_is_the_same_as_in_si(tmp_path, head, scale):
     assert "in the units that stand in brackets" in " ".join(log.remarks)
 
 
-def test_what_the_toml_says_comes_before(tmp_path):
+def test_what_the_toml_says_of_units_comes_before(tmp_path):
     log = read(tmp_path, "time [s],u,q [rad]", '[units]\nq = "deg"\n')
     np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME) * np.pi / 180, atol=1e-9)
-    mapped = '[columns]\n"q [deg]" = "q"\n'
-    log = read(tmp_path, "time [s],u,q [deg]", mapped)
+    assert log.said_units == {"time": "s", "q": "deg"}
+
+
+@pytest.mark.parametrize(("units", "scale"), [("", np.pi / 180), ('[units]\nq = "mrad"\n', 1e-3)])
+def test_a_column_that_the_toml_names_otherwise_has_its_unit_too(tmp_path, units, scale):
+    log = read(tmp_path, "time [s],u,pos [deg]", f'[columns]\n"pos [deg]" = "q"\n{units}')
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME) * scale, atol=1e-9)
+
+
+def test_of_two_columns_of_one_name_none_is_guessed(tmp_path):
+    rows = np.column_stack([TIME, np.sin(TIME), np.cos(TIME), 7 + TIME])
+    head = "time,u,q [rad],q [deg]"
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header=head, comments="")
+    with pytest.raises(InputError, match=r"q in several columns: q \[rad\], q \[deg\]; write"):
+        read_log(tmp_path / "log.csv", ["u"], ["q"], lenient=True)
+    (tmp_path / "log.toml").write_text('[columns]\n"q [rad]" = "q"\n')
+    log = read_log(tmp_path / "log.csv", ["u"], ["q"], lenient=True)
     np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME), atol=1e-9)
 
 

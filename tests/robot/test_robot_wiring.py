@@ -5,11 +5,12 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from advice import advised
 from joint_cases import ARM, SLIDER, arm, arm_log, run, slider, slider_log, steps
 from plain_logs import plain_log, stepped
 from tracked_cases import refused, robot
 
-from identification import Log, write_log
+from identification import Log, read_robot, write_log
 from identification.__main__ import main
 from identification.errors import InputError
 from identification.logs.units import UNITS
@@ -128,6 +129,22 @@ def test_the_commands_refuse_it_for_the_log_and_for_its_records(cart, tmp_path, 
     for logs in ([wrong], [right, "--confirm", wrong]):
         assert main(["discover", str(own.file.path), *map(str, logs)]) == 2
         assert "log 'mm'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("said", "true"), [("cm", "mm"), ("mm", "m"), ("m", "cm")])
+def test_the_unit_that_is_told_mends_a_log_whose_unit_was_said_wrongly(cart, tmp_path, said, true):
+    own, log = cart
+    (name,) = log.output_names
+    wrong, size = tmp_path / "wrong.csv", UNITS[true][1]
+    write_log(replace(log, outputs=log.outputs / size, units={}), wrong)
+    head, rows = wrong.read_text().split("\n", 1)
+    wrong.write_text(head.replace(name, f"{name} [{said}]") + "\n" + rows)
+    wrong.with_suffix(".toml").unlink(missing_ok=True)
+    with pytest.raises(InputError, match="of the log's TOML") as refusal:
+        read_robot(own.file.path, wrong)
+    wrong.with_suffix(".toml").write_text(advised(str(refusal.value)))
+    mended = read_robot(own.file.path, wrong).log
+    np.testing.assert_allclose(mended.outputs, log.outputs, rtol=1e-6, atol=1e-9)
 
 
 STEP, HELD = 0.01, 20  # [s], and samples for which a torque is held

@@ -9,10 +9,16 @@ from elbow_cases import elbow
 from torque_cases import planar, planar_record
 
 from identification import read_robot
+from identification.discovery.second_opinion import TorqueOpinion
 from identification.effects.effect import Candidate
 from identification.errors import InputError
 from identification.prediction.scoring.screening import AND, at_several
-from identification.report.torques.opinion_words import AGAINST, opinion_sentences
+from identification.report.torques.opinion_words import (
+    AGAINST,
+    _advice,
+    _is_one_number,
+    opinion_sentences,
+)
 from identification.robot import second_opinion
 from identification.robot.second_opinion import ask_torques, opinions, with_torques
 from identification.robot.suggestions import suggest
@@ -248,3 +254,33 @@ def test_a_jump_that_torques_see_within_a_sample_takes_some_time_in_a_simulation
     width = next(s for s in jump.shapes if s.name == "w")
     assert found.shape["t_j"] == pytest.approx(0.6, rel=0.5)
     assert found.shape["w"] == width.lower > 0
+
+
+def opinion(free, **sizes):
+    """What only torques name, with some sizes of no unit, and the number that is to be freed."""
+    told = {n: (v, 0.1 * abs(v), "") for n, v in sizes.items()}
+    return TorqueOpinion(
+        name="law", where=AT, sizes=told, fall=0.5, t=9.0, standing="own", is_named=False, free=free
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("free", "sizes", "said"), [
+    ("joint/elbow.armature", {"a": 0.02},
+     '"joint/elbow.armature" (where the model has zero, with value = 0.02 in the table'
+     ' [parameters."joint/elbow.armature"])'),
+    ("joint/elbow.frictionloss", {"f_c": -0.1}, '"joint/elbow.frictionloss"'),
+    ("actuator/m.gear[0]", {"s": 0.1}, '"actuator/m.gear[0]"'),
+    ("cogging.a@elbow", {"a": 0.3},
+     '"cogging.a@elbow" (with value = 0.3 in the table [parameters."cogging.a@elbow"])'),
+])  # fmt: skip
+def test_a_number_to_be_freed_has_a_value_to_begin_with(free, sizes, said):
+    advice = _advice([opinion(free, **sizes)] * 2)  # what is told twice is one thing to do
+    assert advice.startswith(f"To decide, add {said} to the list free of the robot's file, and")
+
+
+def test_a_law_of_several_numbers_is_not_tested_by_one_of_them():
+    assert _is_one_number(opinion("cogging.a@elbow", a=0.3))
+    assert not _is_one_number(opinion("cogging.a@elbow", a=0.3, b=0.1))
+    assert _is_one_number(opinion("body/fore.mass", M=0.3, z=0.1))
+    assert not _is_one_number(opinion("", a=0.3))
+    assert "identification torques" in _advice([])

@@ -132,7 +132,7 @@ def _conclusion(
         if any(o.standing == "alike" for o in judged):
             only = f"the torques do not tell it from {_called(first)}"
         only = f"only the search over windows names {names}, and {only}"
-    free = [o for o in own if o.free and (o is first or o.standing == "alike")]
+    free = [o for o in own if _is_one_number(o) and (o is first or o.standing == "alike")]
     return [f"So {only}. {_advice(free)}"]
 
 
@@ -169,11 +169,19 @@ def _apart(o: TorqueOpinion, named: NamedEffect) -> float | None:
     return max(far, default=None)
 
 
+def _is_one_number(o: TorqueOpinion) -> bool:
+    """Returns whether one number that is freed tests what torques name.
+
+    A law with several numbers is not tested by its first one alone.
+    """
+    return bool(o.free) and ("/" in o.free or len(o.sizes) == 1)
+
+
 def _advice(free: Sequence[TorqueOpinion]) -> str:
     """Returns what to do next about effects that only torques name, and which numbers can be."""
     if not free:
         return "The command `identification torques` tells more."
-    first, *others = (_entry(o) for o in free)
+    first, *others = dict.fromkeys(_entry(o) for o in free)
     turns = f", or in its place {listed(others)}" if others else ""
     return (
         f"To decide, add {first} to the list free of the robot's file, and search again{turns}: if"
@@ -182,8 +190,11 @@ def _advice(free: Sequence[TorqueOpinion]) -> str:
 
 
 def _entry(o: TorqueOpinion) -> str:
-    """Returns a number to be freed; that of an effect, which no model has, with a value."""
-    if "/" in o.free:
-        return f'"{o.free}"'
-    value, *_ = next(iter(o.sizes.values()))
-    return f'"{o.free}" (with value = {value:.3g} in the table [parameters."{o.free}"])'
+    """Returns a number to be freed, with a value where the model may have none to begin with."""
+    value = next((v for v, *_ in o.sizes.values()), 0.0)
+    given = f'with value = {value:.3g} in the table [parameters."{o.free}"]'
+    if "/" not in o.free:  # of an effect, which no model has
+        return f'"{o.free}" ({given})'
+    # A search cannot begin at zero, where the model has no friction or no rotor.
+    is_none = o.free.endswith((".frictionloss", ".armature", ".damping")) and value > 0
+    return f'"{o.free}"' + (f" (where the model has zero, {given})" if is_none else "")

@@ -121,12 +121,14 @@ def refuse_milliseconds(model: mujoco.MjModel, file: RobotFile, log: Log, path: 
     if h <= MOST_STEPS * step or "time" in file.trust:
         return
     sidecar = read_sidecar(path.with_suffix(".toml"), file.log, file.path)
-    given = sidecar.units.get("time", "s")
+    given = log.said_units.get("time", "s")
     unit = next(iter(units_that_fit("s", h / to_si(given)[1], MOST_STEPS * step)), None)
     where, but_not = path.with_suffix(".toml"), ""
     if "time" in sidecar.units:
         where = sidecar.file_of("units")
         but_not = f", and not in {given} as {where} says"
+    elif "time" in log.said_units:
+        but_not = f", and not in {given} as its column says"
     asked = "see whether its stamps are right, else"
     if unit:
         asked = (
