@@ -35,8 +35,10 @@ def curve_for_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
     drawn = without(state, sure, {a.candidate.key for a in doubtful})
     if drawn is None:
         return state
+    # No more curves than there were effects: no law is asked again, which would be found beside a
+    # curve, and would be what its cause does between the nodes.
     grows = drawn.room > 0
-    while grows:
+    while grows and len(drawn.accepted) < len(state.accepted):
         at_joints = tuple(s for s in drawn.scores if _is_beside(s.candidate, doubtful))
         # What was refitted before asked another question, and these curves do not pay for it.
         more = add_curve(replace(drawn, scores=at_joints, rejected=()), progress)

@@ -71,12 +71,14 @@ def conclude(state: WindowSearch) -> Discovery:
     if needed is None:
         needed = _needed_input_error(nominal, options)
     findings = find_remaining(state, rejected, shifts, needed)
-    limit = options.left_confidence if findings else options.max_confidence
-    named, stick = names_of(state, limit, bool(findings))
+    # That the fit without effects was worse is told; what was found says why, and nothing is left.
+    left = [f for f in findings if f.kind is not FindingKind.WORSE_FIT or not state.accepted]
+    limit = options.left_confidence if left else options.max_confidence
+    named, stick = names_of(state, limit, bool(left))
     is_unexplained = _is_worse(state) or _errs(model, needed, options)
     # Where the fit was worse than the values with which it began, an effect says why.
     closes = largest_share(state.worse_fit or nominal.unseen, model.unseen, options)
-    doubts = doubts_of_names(named, forbidden_of(state), findings, closes, options)
+    doubts = doubts_of_names(named, forbidden_of(state), left, closes, options)
     verdict, doubtful = decide(named, doubts, findings, is_unexplained), None
     log, by_joint = task.records[0].log, dict[str, float]()
     if verdict == "unknown effect":
@@ -94,7 +96,7 @@ def conclude(state: WindowSearch) -> Discovery:
         rejected=rejected, share=_share(nominal.unseen, model.unseen),
         smooth_share=smooth,
         smooth_by_joint=dict(sorted(by_joint.items(), key=lambda share: -share[1])),
-        unexplained=bool(findings) or (
+        unexplained=bool(left) or (
             # inputs that err by what is usual may excuse an error that is far above the noise
             is_off(model, options) if verdict == "nothing missing" else not named
         ),

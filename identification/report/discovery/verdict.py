@@ -83,7 +83,9 @@ def _verdict(found: Discovery) -> list[str]:
     said.append(_proof(found))
     if found.unexplained:
         said.append(_unexplained(found))
-    elif found.hidden:
+    else:  # how the search began, where the fit without effects was worse
+        said += _findings(found)
+    if found.hidden and not found.unexplained:
         said.append("Nothing else is missing that this log shows.")
     return said
 
@@ -233,8 +235,6 @@ def _doubtful(found: Discovery) -> list[str]:
 def _unexplained(found: Discovery) -> str:
     """Returns the paragraph on what is left after the named effects."""
     findings = _findings(found)
-    if findings and all(f.kind is FindingKind.WORSE_FIT for f in found.findings):
-        return " ".join(findings)  # which says how the search began, and not what is left
     more = "named effect" if len(found.named) == 1 else "named effects"
     ratio = found.times_noise(found.after)
     times = f", {times_noise(ratio)}" if 1 < ratio < inf else ""
