@@ -59,7 +59,7 @@ def test_a_record_that_repeats_another_is_no_further_witness():
 def test_records_too_short_to_confirm_are_refused():
     first, second = records(2, {MU: 0.15})
     short = rows(second, 45)
-    with pytest.raises(InputError, match=r"hold 2 windows of 0\.2 s, too few to prove anything"):
+    with pytest.raises(InputError, match=r"holds 2 windows of 0\.2 s, too few to prove anything"):
         discover_records(nominal_model(), [first], [short], listed(FEW[0]))
 
 
