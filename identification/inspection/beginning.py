@@ -22,7 +22,7 @@ from identification.logs.swing import FEWEST, part_of_swing
 from identification.logs.units import to_si
 from identification.model.scaled_servo import is_scaled_servo, scaling
 from identification.model.tied import follows
-from identification.robot.file.checks import refuse_same_stem
+from identification.robot.file.checks import is_toml_of
 from identification.robot.file.completed import positions_without_sensor, torques_without_motor
 from identification.robot.file.file import RobotFile
 from identification.robot.file.model_file import robot_spec
@@ -50,7 +50,7 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
     """Write the robot's file to begin with, which nothing may stand in the place of.
 
     Raises:
-        InputError: the file exists, or the model cannot be read.
+        InputError: the file exists or bears the name of the log, or the model cannot be read.
     """
     file = RobotFile(path=path, model=model, free=())
     spec, said = robot_spec(file)
@@ -58,7 +58,11 @@ def write_beginning(found: Inspection, model: Path, path: Path) -> Beginning:
         raise InputError(
             f"{path} exists, and nothing of yours is replaced; give another name behind --robot"
         )
-    refuse_same_stem(file, found.path)
+    if is_toml_of(path, found.path):
+        raise InputError(
+            f"{path} would be read as what {found.path} says of its own units and parts, because it"
+            " bears its name; give another name behind --robot"
+        )
     compiled = spec.compile()
     added = _motors(spec, compiled, found) | _sensors(spec, compiled, found)
     if added:

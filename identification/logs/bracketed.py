@@ -36,7 +36,7 @@ def bracketed(
     known = {*(sidecar.columns.get(n, n) for n in names)}
     for column in names:
         match = _BRACKETED.fullmatch(column)
-        if match is None or match["unit"] not in UNITS or column in asked:
+        if match is None or match["unit"] not in UNITS or column in {*asked, *sidecar.ignore}:
             continue
         name = sidecar.columns.get(match["name"], match["name"])
         if column in sidecar.columns:
@@ -70,8 +70,11 @@ def with_bracketed(table: Table, asked: Collection[str], sidecar: Sidecar) -> tu
         )
     units = {n: unit for n, unit in found.values() if lookup(sidecar.units, n) is None}
     others = {old: new for old, new in sidecar.columns.items() if new not in columns.values()}
-    told = table.told(
-        f"Columns {listed(columns)} of log {table.path.stem!r} are read as"
-        f" {listed(columns.values())}, in the units that stand in brackets."
-    ) if units or others.keys() != sidecar.columns.keys() else table  # fmt: skip
-    return told, replace(sidecar, columns={**others, **columns}, units={**sidecar.units, **units})
+    sidecar = replace(sidecar, columns={**others, **columns}, units={**sidecar.units, **units})
+    told = [column for column, name in columns.items() if name in units]
+    if not told:
+        return table, sidecar
+    return table.told(
+        f"Columns {listed(told)} of log {table.path.stem!r} are read as {listed(units)}, in the"
+        " units that stand in brackets."
+    ), sidecar

@@ -218,6 +218,16 @@ def test_names_without_a_role_are_told_the_right_way_round():
     assert [(a.output, a.input) for a in find_answers(STEP, both, both)] == [("shaft", "motor")]
 
 
+def test_a_file_that_would_be_read_as_the_log_s_own_is_not_written(tmp_path):
+    (tmp_path / "arm.xml").write_text(ARM.format(damping=0.2))
+    rows = "\n".join(f"{STEP * k},{k},{k},{k},{k}" for k in range(50))
+    (tmp_path / "run.csv").write_text(f"time,m1,m2,a1,a2\n{rows}\n")
+    found = inspect_log(tmp_path / "run.csv")
+    with pytest.raises(InputError, match="give another name behind --robot"):
+        write_beginning(found, tmp_path / "arm.xml", tmp_path / "run.toml")
+    assert not (tmp_path / "run.toml").exists()
+
+
 def test_a_log_of_a_few_rows_is_no_beginning(tmp_path):
     (tmp_path / "arm.xml").write_text(ARM.format(damping=0.2))
     rows = "\n".join(f"{STEP * k},{k},{k},{k},{k}" for k in range(5))

@@ -36,8 +36,8 @@ def after(monkeypatch, begun, doubtful, proven="", better=False, joint="joint"):
             return state
         return replace(state, accepted=(*state.accepted, accepted(f"curve{rest[0]}")))
 
-    monkeypatch.setattr(move, "judged", lambda state: (sure, doubts))
-    monkeypatch.setattr(move, "without", without)
+    monkeypatch.setattr(move, "sure_and_doubtful", lambda state: (sure, doubts))
+    monkeypatch.setattr(move, "fitted_without", without)
     monkeypatch.setattr(move, "add_curve", add_curve)
     monkeypatch.setattr(move, "compared", lambda *given: None)
     monkeypatch.setattr(move, "find_doubt", lambda *given: None if better else "chance")

@@ -128,7 +128,7 @@ def test_one_effect_is_not_asked_because_nothing_would_stay(monkeypatch):
 
 
 def test_no_effect_is_lost_where_the_others_cannot_be_fitted_alone(monkeypatch):
-    monkeypatch.setattr(drop_doubtful, "judged", lambda state: (
+    monkeypatch.setattr(drop_doubtful, "sure_and_doubtful", lambda state: (
         [*state.accepted[:1]], [*state.accepted[1:]]
     ))  # fmt: skip
     monkeypatch.setattr(drop_doubtful, "refitted", lambda *given: None)

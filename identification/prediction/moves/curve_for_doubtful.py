@@ -18,7 +18,7 @@ from dataclasses import replace
 from identification.effects.effect import Candidate
 from identification.prediction.judging.trial import Contender, compared, find_doubt
 from identification.prediction.moves.add_curve import add_curve
-from identification.prediction.moves.drop_doubtful import judged, without
+from identification.prediction.moves.drop_doubtful import fitted_without, sure_and_doubtful
 from identification.prediction.task import WindowSearch
 from identification.prediction.verdict.neighbours import share_a_joint
 from identification.runtime.progress import Progress
@@ -29,10 +29,10 @@ def curve_for_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
 
     A curve that is sure stays, and is no law.
     """
-    sure, doubtful = judged(state)
+    sure, doubtful = sure_and_doubtful(state)
     if not doubtful or not all(a.candidate.effect.is_curve for a in sure):
         return state
-    drawn = without(state, sure, {a.candidate.key for a in doubtful})
+    drawn = fitted_without(state, sure, {a.candidate.key for a in doubtful})
     if drawn is None:
         return state
     # No more curves than there were effects: no law is asked again, which would be found beside a

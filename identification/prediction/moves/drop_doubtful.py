@@ -52,10 +52,10 @@ def drop_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
     watch, laws = Watch(state.seconds), laws_of(state)
     if len(laws) == 1:
         return state
-    sure, doubtful = judged(state)
+    sure, doubtful = sure_and_doubtful(state)
     if not doubtful or all(a.candidate.effect.is_curve for a in sure):
         return state
-    less = without(state, sure, {a.candidate.key for a in doubtful})
+    less = fitted_without(state, sure, {a.candidate.key for a in doubtful})
     if less is None:
         return state
     for a in doubtful:
@@ -64,7 +64,7 @@ def drop_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
     return replace(less, rejected=(*doubtful, *state.rejected), seconds=watch.seconds)
 
 
-def judged(state: WindowSearch) -> tuple[list[Contender], list[Contender]]:
+def sure_and_doubtful(state: WindowSearch) -> tuple[list[Contender], list[Contender]]:
     """Returns the effects whose names are sure beside all others, and those in doubt, with why."""
     options, laws = state.task.options, laws_of(state)
     named, stick = names_of(state, options.max_confidence, is_off(state.model, options))
@@ -83,7 +83,7 @@ def judged(state: WindowSearch) -> tuple[list[Contender], list[Contender]]:
         why |= {a.candidate.key: "neighbour" for a in more}
 
 
-def without(
+def fitted_without(
     state: WindowSearch, sure: Sequence[Contender], doubtful: Collection[Key]
 ) -> WindowSearch | None:
     """Returns the state whose model is fitted without effects in doubt; None where it cannot be."""

@@ -27,9 +27,14 @@ FEW = 3  # sensors that a message tells
 MOST_STEPS = 100.0  # of the model in a sample; with more, time is most often in ms, us or ns
 
 
+def is_toml_of(path: Path, log: Path) -> bool:
+    """Returns whether a file is, or would be, the TOML beside a log."""
+    return bool(log.name) and os.path.realpath(log.with_suffix(".toml")) == os.path.realpath(path)
+
+
 def refuse_same_stem(file: RobotFile, log: Path) -> None:
     """Refuse a robot's file that would also be read as the TOML of the log."""
-    if log.name and os.path.realpath(log.with_suffix(".toml")) == os.path.realpath(file.path):
+    if is_toml_of(file.path, log):
         raise InputError(
             f"{file.path} bears the name of {log} and would be read as what its log's own TOML says"
             " of units and parts; rename one of them"
