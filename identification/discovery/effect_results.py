@@ -1,7 +1,7 @@
 """Results of a discovery on one effect: named, rejected, a rival, or the smallest that shows.
 
     bic_gain    = 2 ln L(with) - 2 ln L(without) - k ln n       L: of the n fitted samples
-    evidence    = n_y W mean_b g_b - k ln W                     over all windows, fitted and unseen
+    evidence    = n_y N mean_b g_b - k ln N        N: independent readings of all windows
 
 k numbers are added by the effect. A search along a free run has the first, one over a horizon the
 second (`identification.prediction.judging.evidence`); they compare effects of one search only.

@@ -103,6 +103,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "gains_of_outputs": (
         HORIZON, "weighs laws by what each output gains, and not by the mean over all outputs",
     ),
+    "independent_readings": (
+        HORIZON, "counts readings whose errors are independent for the evidence, and not windows",
+    ),
     "strata_of_records": (
         HORIZON, "tests the mean gain by how blocks scatter within each record, and not by how"
         " records differ",

@@ -28,8 +28,9 @@ def count_blocks(windows: int) -> int:
 
 
 def output_gains(
-    without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], noise: np.ndarray
-) -> list[np.ndarray]:
+    without: Sequence[np.ndarray], with_it: Sequence[np.ndarray], noise: np.ndarray,
+    weights: np.ndarray | None = None,
+) -> list[np.ndarray]:  # fmt: skip
     """Returns the mean over the outputs of g of each, of the blocks of each record, shape (B,).
 
     Args:
@@ -37,12 +38,14 @@ def output_gains(
             a record each, in units of s².
         with_it: the same under the second model.
         noise: ε² of each output, shape (ny,), in these units.
+        weights: of each output, shape (ny,), 1 on average; ones where None.
     """
+    each_weight = np.ones(len(noise)) if weights is None else weights
     each = [
         block_gains([x[:, y] for x in without], [x[:, y] for x in with_it], max(e, LEAST_NOISE))
         for y, e in enumerate(noise)
     ]
-    return [np.asarray(np.mean(of_record, axis=0)) for of_record in zip(*each, strict=True)]
+    return [each_weight @ np.array(of_record) / len(noise) for of_record in zip(*each, strict=True)]
 
 
 def block_gains(

@@ -13,7 +13,7 @@ from identification.discovery.impossible import find_impossible
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.prediction.fits.model import WindowModel
-from identification.prediction.judging.evidence import all_gains, count_windows, evidence
+from identification.prediction.judging.evidence import all_gains, evidence
 from identification.prediction.judging.trial import (
     Contender,
     Doubt,
@@ -47,8 +47,7 @@ def judged(
     gains = all_gains(model, new, options)
     records = len(model.unseen.at_horizon) + len(model.fit.problem.parts)
     numbers = count_numbers(c) * (records if c.effect.own else 1)
-    windows, outputs = count_windows(model), len(model.scale)
-    gain = float(evidence([gains], [numbers], windows, outputs)[0, 0])
+    gain = float(evidence([gains], [numbers], len(model.scale))[0, 0])
     doubt: Doubt | None = "numbers" if gain <= 0 else find_doubt(found, refits, options)
     if doubt is None and worse_fit and _is_worse(new.unseen, model.unseen, options):
         doubt = "record"

@@ -32,7 +32,7 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.effects.laws.joint_group import SLIDE
 from identification.prediction.fits.model import WindowModel
-from identification.prediction.judging.evidence import count_windows, evidence
+from identification.prediction.judging.evidence import Gains, evidence
 from identification.prediction.scoring.scores import WindowScore
 from identification.windows.comparison import Prediction, compare
 from identification.windows.unseen import Unseen
@@ -62,7 +62,7 @@ class Contender:
 
     model: WindowModel  # with it
     prediction: Prediction  # of unseen records, over the model without it
-    gains: np.ndarray  # by block of the fitted windows, then of the unseen ones, shape (B,)
+    gains: Gains  # of fitted windows, then of unseen ones
     numbers: int  # that it adds to the model, those of each record counted
     criterion: float  # E, what speaks for it against the model without it (`evidence`)
     explained: float  # fall of the mean square of the fitted windows, in units of s²
@@ -89,10 +89,9 @@ class Contender:
 
 def evidences(contenders: Sequence[Contender]) -> np.ndarray:
     """Returns E of contenders for one place by resample, (k, R); the first is of all blocks."""
-    model = contenders[0].model
     return evidence(
-        [c.gains for c in contenders], [c.numbers for c in contenders], count_windows(model),
-        len(model.scale),
+        [c.gains for c in contenders], [c.numbers for c in contenders],
+        len(contenders[0].model.scale),
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.prediction.fits.model import WindowModel
-from identification.prediction.judging.evidence import all_gains, count_windows, evidence
+from identification.prediction.judging.evidence import all_gains, evidence
 from identification.prediction.judging.extension import refitted
 from identification.prediction.judging.trial import Contender, find_rivals
 from identification.prediction.scoring.contenders import count_numbers
@@ -70,8 +70,8 @@ def _criterion(
 ) -> float:
     """Returns E of one of a model's effects, beside the others."""
     numbers = next(count_numbers(c) for c in model.candidates if c.key == key)
-    windows, outputs = count_windows(parent), len(parent.scale)
-    return float(evidence([all_gains(parent, model, options)], [numbers], windows, outputs)[0, 0])
+    gains = all_gains(parent, model, options)
+    return float(evidence([gains], [numbers], len(parent.scale))[0, 0])
 
 
 def with_rivals(
@@ -95,6 +95,7 @@ def with_rivals(
         return member
     others = [o for o in place.tried if o.candidate.key not in named]
     rivals = find_rivals(others, place.without, place.scores, member.model, scores)
+    more = member.gains.blocks - own.gains.blocks
     return replace(member, alternatives=tuple(
-        replace(o, gains=member.gains + o.gains - own.gains) for o in rivals
+        replace(o, gains=replace(member.gains, blocks=o.gains.blocks + more)) for o in rivals
     ))  # fmt: skip
