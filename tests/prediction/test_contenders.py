@@ -18,7 +18,7 @@ from identification.effects.plant.joint_plant import candidates
 from identification.effects.sizes import Shape, Size
 from identification.model.parameter import Parameter, ParameterSet
 from identification.model.predictor import Predictor
-from identification.prediction.judging.evidence import compute_confidence, evidence
+from identification.prediction.judging.evidence import Gains, compute_confidence, evidence
 from identification.prediction.judging.trial import (
     LEVEL,
     TWINS,
@@ -167,25 +167,18 @@ def test_simpler_laws_act_as_the_winner_does():
 
 @dataclass(frozen=True)
 class Model:
-    """What the ranking sees of a model: W = 80 windows of one output."""
+    """What the ranking sees of a model of one output."""
 
     candidates: tuple
-    fit: object
-    unseen: object
     scale: tuple = (1.0,)
 
 
 def contender(e, gain, seed=0, numbers=1, is_proven=True):
-    windows = SimpleNamespace(cut=SimpleNamespace(starts=np.arange(40)))
-    model = Model(
-        (score(e, 0.5).candidate,),
-        SimpleNamespace(problem=SimpleNamespace(parts=(windows,))),
-        SimpleNamespace(select=SimpleNamespace(at_horizon=(np.zeros(40),))),
-    )
-    gains = gain + 0.1 * np.random.default_rng(seed).normal(size=20)
+    model = Model((score(e, 0.5).candidate,))
+    gains = Gains(gain + 0.1 * np.random.default_rng(seed).normal(size=20), 80.0)
     return Contender(
         model=model, prediction=None, gains=gains, numbers=numbers,
-        criterion=float(evidence([gains], [numbers], 80, 1)[0, 0]), explained=0.0,
+        criterion=float(evidence([gains], [numbers], 1)[0, 0]), explained=0.0,
         doubt=None if is_proven else "chance",
     )  # fmt: skip
 
@@ -210,15 +203,15 @@ def test_more_numbers_come_first_where_all_windows_tell():
 
 
 def test_a_law_that_adds_a_number_and_nothing_else_pays_for_it():
-    """The odds of two laws whose E differ by ln W are √W: 80 windows of the cases."""
+    """The odds of two laws whose E differ by ln N are √N: 80 readings of the cases."""
     plain, rich = contender(effect("plain"), 1.0), contender(effect("rich"), 1.0, numbers=2)
     shares = compute_confidence(evidences([plain, rich]))
     assert shares[0] / shares[1] == pytest.approx(np.sqrt(80))
 
 
 def test_the_evidence_of_all_blocks_is_twice_the_gain_in_likelihood_less_the_price_of_numbers():
-    gains = [np.array([0.2, 0.4]), np.array([0.1, 0.1])]
-    found = evidence(gains, [1, 3], windows=50, outputs=2)[:, 0]
+    gains = [Gains(np.array([0.2, 0.4]), 50.0), Gains(np.array([0.1, 0.1]), 50.0)]
+    found = evidence(gains, [1, 3], outputs=2)[:, 0]
     np.testing.assert_allclose(found, [2 * 50 * 0.3 - np.log(50), 2 * 50 * 0.1 - 3 * np.log(50)])
 
 

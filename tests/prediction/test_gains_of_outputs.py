@@ -4,11 +4,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fit_of_errors import fit_of_errors
 from hypothesis import given
 from hypothesis import strategies as st
 
 from identification.discovery.options import DiscoveryOptions
-from identification.prediction.judging.evidence import all_gains, compute_confidence, evidence
+from identification.prediction.judging.evidence import (
+    all_gains,
+    compute_confidence,
+    evidence,
+)
 from identification.prediction.judging.trial import compared, find_doubt
 from identification.windows.blocks import count_blocks
 from identification.windows.unseen import Unseen
@@ -24,7 +29,7 @@ def model(errors, noise, scale):
     told = SimpleNamespace(of_outputs=of_outputs)
     powers = (noise / scale) ** 2
     return SimpleNamespace(
-        fit=SimpleNamespace(errors=(fitted,)), scale=scale,
+        fit=fit_of_errors(fitted), scale=scale,
         unseen=SimpleNamespace(select=told, noise=powers, floor=float(powers.mean())),
     )  # fmt: skip
 
@@ -47,12 +52,13 @@ def probability(options):
         all_gains(without, model(white([first, 0.3], 2), noise, scale), options)
         for first in (0.3, 1.8)
     )
-    return compute_confidence(evidence([right, near], [3, 1], WINDOWS, 2))[0]
+    return compute_confidence(evidence([right, near], [3, 1], 2))[0]
 
 
 def test_a_law_that_predicts_to_the_noise_is_likelier_than_one_that_leaves_six_times_as_much():
     assert probability(PLAIN) > 0.99
-    assert probability(OTHER) < 0.5  # the noise of the second output hides the first one
+    windows = DiscoveryOptions(without=("gains_of_outputs", "independent_readings"))
+    assert probability(windows) < 0.5  # the noise of the second output hides the first one
 
 
 @given(st.floats(1e-3, 1e3), st.integers(0, 2**31 - 1))
@@ -64,15 +70,18 @@ def test_units_of_an_output_do_not_matter(unit, seed):
     other = all_gains(
         model(a * own, noise * own, scale * own), model(b * own, noise * own, scale * own), PLAIN
     )
-    np.testing.assert_allclose(other, plain, rtol=1e-9, atol=1e-12)
-    assert len(plain) == 2 * count_blocks(WINDOWS // 2)
+    np.testing.assert_allclose(other.blocks, plain.blocks, rtol=1e-9, atol=1e-12)
+    assert other.readings == pytest.approx(plain.readings)
+    assert len(plain.blocks) == 2 * count_blocks(WINDOWS // 2)
 
 
 def test_with_one_output_both_ways_are_the_same():
     noise, scale = np.array([0.1, 0.1]), np.array([1.0, 1.0])
     a, b = (white([s, s], k)[..., :1] for s, k in ((1.0, 5), (0.6, 6)))
     one = [model(x, noise[:1], scale[:1]) for x in (a, b)]
-    np.testing.assert_allclose(all_gains(*one, PLAIN), all_gains(*one, OTHER), rtol=1e-12)
+    plain, other = all_gains(*one, PLAIN), all_gains(*one, OTHER)
+    np.testing.assert_allclose(plain.blocks, other.blocks, rtol=1e-12)
+    assert plain.readings == other.readings
 
 
 def test_an_output_that_never_errs_says_nothing():
@@ -82,8 +91,9 @@ def test_an_output_that_never_errs_says_nothing():
     alone = all_gains(
         model(a[..., :1], noise[:1], scale[:1]), model(b[..., :1], noise[:1], scale[:1]), PLAIN
     )
-    np.testing.assert_allclose(2 * both, alone, rtol=1e-9)
-    assert both.mean() == pytest.approx(np.log(2.0), abs=0.1)
+    told, of_one = (g.readings * outputs * g.blocks for g, outputs in ((both, 2), (alone, 1)))
+    np.testing.assert_allclose(told, of_one, rtol=1e-9)
+    assert alone.blocks.mean() == pytest.approx(2 * np.log(2.0), abs=0.2)
 
 
 def unseen(errors, noise):

@@ -84,7 +84,7 @@ def test_what_physics_forbids_is_asked_again_beside_what_was_found_since():
     state = with_accepted("quadratic_friction")
     (mine,) = state.accepted
     rival, *_ = mine.alternatives
-    far = replace(rival, gains=mine.gains + 1.0, doubt="mass")
+    far = replace(rival, gains=replace(mine.gains, blocks=mine.gains.blocks + 1.0), doubt="mass")
     mine = replace(mine, alternatives=(far,))
     alone = replace(state, accepted=(mine,))
     assert find_odds(mine, state.model).forbidden > 0.5

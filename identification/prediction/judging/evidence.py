@@ -1,17 +1,16 @@
 """The evidence for a law against others in its place: fitted windows, and unseen that decide.
 
-    g_cb = mean_y n_y g_cby/n
-    E_c = y n W mean_b g_cb - k_c ln(n W)
+    E_c = W Σ_y n_y mean_b g_cby - k_c ln(W n)
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
 
-g_cby: gains of blocks b and outputs y with the law c (`identification.windows.blocks`), W windows
-of y outputs, each with n_y independent readings (`judging.readings`), n on average; k_c numbers
-that c adds. Each output has an error of its own, as in a likelihood whose variances are found too:
-an output that a law predicts to its noise would else count for nothing beside one whose noise is
-larger in units of s. E is twice the gain of a log likelihood with the price that BIC puts on
-numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample (Kass, Raftery 1995):
-two laws that predict alike share them, however surely one is a little better. Blocks are drawn with
-replacement (bootstrap; Efron 1979).
+g_cby: gains of blocks b and outputs y with the law c (`identification.windows.blocks`), W windows,
+each with n_y independent readings of output y (`judging.readings`), n: their mean over outputs, k_c
+numbers that c adds. Each output has an error of its own, as in a likelihood whose variances are
+found too: an output that a law predicts to its noise would else count for nothing beside one whose
+noise is larger in units of s. E is twice the gain of a log likelihood with the price that BIC puts
+on numbers (Schwarz 1978), so that exp(E/2) are the odds of a law in one resample (Kass, Raftery
+1995): two laws that predict alike share them, however surely one is a little better. Blocks are
+drawn with replacement (bootstrap; Efron 1979).
 """
 
 from __future__ import annotations
@@ -34,8 +33,8 @@ RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth
 class Gains:
     """What one model predicts better than another, and how many readings tell it."""
 
-    blocks: np.ndarray  # g_b, shape (B,)
-    readings: float  # n W
+    blocks: np.ndarray  # Σ_y n_y g_by/Σ_y n_y, shape (B,)
+    readings: float  # W n, of one output
 
 
 def all_gains(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> Gains:
@@ -71,7 +70,7 @@ def evidence(
     Args:
         gains: of each law.
         numbers: that each law adds to the model.
-        outputs: y.
+        outputs: their number.
     """
     g = np.array([each.blocks for each in gains])  # (k, B)
     readings = np.array([max(2.0, each.readings) for each in gains])[:, None]
