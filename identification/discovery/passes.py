@@ -133,7 +133,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "further_laws": (
         HORIZON, "names no law beside a surer one that explains less than 92 % of what smooth"
-        " forces of its joint could",
+        " forces of its joint could, and no curve that explains less than half of it",
     ),
     "scatter_of_noise": (
         HORIZON, "tells an error above the noise only beyond what the noise's estimate may miss",

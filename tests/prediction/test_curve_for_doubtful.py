@@ -3,6 +3,7 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from test_drop_doubtful import accepted, letter, state
 
@@ -39,10 +40,8 @@ def after(monkeypatch, begun, doubtful, proven="", better=False, joint="joint"):
     monkeypatch.setattr(move, "sure_and_doubtful", lambda state: (sure, doubts))
     monkeypatch.setattr(move, "fitted_without", without)
     monkeypatch.setattr(move, "add_curve", add_curve)
-    monkeypatch.setattr(move, "compared", lambda *given: None)
-    monkeypatch.setattr(move, "find_doubt", lambda *given: None if better else "chance")
+    monkeypatch.setattr(move, "is_better", lambda *given: better)
     monkeypatch.setattr(move, "share_a_joint", lambda a, b: a.where == b.where)
-    begun.model.unseen = None
     new = move.curve_for_doubtful(begun, lambda line: None)
     lost = [(letter(a), a.doubt) for a in new.rejected]
     return "".join(map(letter, new.accepted)), lost, asked
@@ -66,6 +65,24 @@ def test_curves_take_the_place_of_what_is_in_doubt(monkeypatch, names, doubtful,
 
 def test_laws_that_unseen_records_prove_to_be_better_stay(monkeypatch):
     assert after(monkeypatch, state("a", "b"), "ab", "D", better=True)[:2] == ("ab", [])
+
+
+@pytest.mark.parametrize(("doubt", "curves", "is_better"), [
+    (None, 5.0, True),  # they close five ninths of the gap, and effects all of it
+    (None, 1.5, False),  # of which effects take a twentieth more, however surely
+    ("chance", 5.0, False),
+])  # fmt: skip
+def test_effects_are_better_where_they_close_more_of_the_gap(monkeypatch, doubt, curves, is_better):
+    def of(square):
+        at_horizon = (np.full(4, square),)
+        return SimpleNamespace(
+            unseen=SimpleNamespace(select=SimpleNamespace(at_horizon=at_horizon))
+        )
+
+    monkeypatch.setattr(move, "compared", lambda *given: None)
+    monkeypatch.setattr(move, "find_doubt", lambda *given: doubt)
+    begun = replace(state("a"), nominal=of(10.0), model=of(1.0))
+    assert move.is_better(begun, replace(begun, model=of(curves))) is is_better
 
 
 def test_a_curve_is_asked_at_the_joints_of_the_doubtful_only(monkeypatch):

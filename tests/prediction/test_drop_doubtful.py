@@ -121,6 +121,14 @@ def test_a_further_law_explains_nearly_all_that_smooth_forces_could(
     assert after(monkeypatch, sure, shares=shares, begun=begun) == ("abc"[: len(shares)], [])
 
 
+@pytest.mark.parametrize(("share", "kept"), [(0.4, "a"), (0.6, "aB")])
+def test_a_curve_beside_a_law_explains_half_of_what_smooth_forces_could(monkeypatch, share, kept):
+    shares, sure = [(0.99, 9.0), (share, 5.0)], {"a": None, "B": None}
+    assert after(monkeypatch, sure, shares=shares) == (kept, [("B", "further")] * (kept == "a"))
+    begun = state(*sure, without=("further_laws",))
+    assert after(monkeypatch, sure, shares=shares, begun=begun) == ("aB", [])
+
+
 def test_one_effect_is_not_asked_because_nothing_would_stay(monkeypatch):
     monkeypatch.setattr(drop_doubtful, "names_of", lambda *given: pytest.fail("it is asked"))
     begun = state("a")

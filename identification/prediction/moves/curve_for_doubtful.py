@@ -7,13 +7,15 @@ taken out, and curves are asked at their joints. What these draw is an unlisted 
 more than that nothing is known.
 
 The doubtful effects stay, and nothing is named, where no curve is proven, or where unseen records
-prove that these effects together predict better than the curves.
+prove that these effects together predict better than the curves, by enough to matter.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from identification.effects.effect import Candidate
 from identification.prediction.judging.trial import Contender, compared, find_doubt
@@ -44,12 +46,31 @@ def curve_for_doubtful(state: WindowSearch, progress: Progress) -> WindowSearch:
         more = add_curve(replace(drawn, scores=at_joints, rejected=()), progress)
         grows = len(more.accepted) > len(drawn.accepted) and more.room > 0
         drawn = more
-    laws_are_better = compared(drawn.model.unseen, state.model.unseen, state.task.options)
-    if not drawn.accepted or find_doubt(laws_are_better, 1, state.task.options) is None:
+    if not drawn.accepted or is_better(state, drawn):
         return replace(state, seconds=drawn.seconds)
     for a in doubtful:
         progress(f"{a.candidate.effect.name}, {a.candidate.where}: is in doubt, curves do as much")
     return replace(drawn, rejected=(*doubtful, *state.rejected))
+
+
+def is_better(state: WindowSearch, drawn: WindowSearch) -> bool:
+    """Returns whether effects in doubt predict better than curves, by a part of the gap they close.
+
+    What follows a curve between its nodes takes little away, however surely.
+
+    Args:
+        state: with the effects.
+        drawn: with the curves in their place.
+    """
+    options = state.task.options
+    if find_doubt(compared(drawn.model.unseen, state.model.unseen, options), 1, options):
+        return False
+    nominal = state.worse_fit or state.nominal.unseen
+    without, curves, laws = (
+        float(np.mean(np.concatenate(u.select.at_horizon)))
+        for u in (nominal, drawn.model.unseen, state.model.unseen)
+    )
+    return curves - laws > options.min_gap_share * (without - laws)
 
 
 def _is_beside(candidate: Candidate, doubtful: Sequence[Contender]) -> bool:
