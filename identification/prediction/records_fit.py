@@ -28,6 +28,7 @@ from identification.prediction.fits.record_errors import (
     errors_by_unit,
     record_errors,
 )
+from identification.prediction.fits.std import is_told_by_few
 from identification.prediction.judging.extension import as_last_fit
 from identification.prediction.judging.trial import find_doubt
 from identification.runtime.pool import one_blas_thread
@@ -85,10 +86,14 @@ class RecordsFit:
     def std(self) -> np.ndarray:
         """Std of each value by blocks of windows and by the steps, in its unit, shape (p,).
 
-        NaN where too few windows tell of it for a std to be known, or where it lies on a bound; inf
-        where no window tells of it.
+        NaN where it lies on a bound; inf where no window tells of it.
         """
         return np.array([*self.model.told_std.values()])
+
+    @property
+    def is_told_by_few(self) -> np.ndarray:
+        """True where few windows tell of a value, shape (p,); its std takes them for usual."""
+        return is_told_by_few(self.model.fit)
 
     @property
     def at_bound(self) -> np.ndarray:

@@ -6,8 +6,8 @@ from fit_of_errors import fit_of_errors
 from hypothesis import given
 from hypothesis import strategies as st
 
+from identification.prediction.fits.readings import independent_readings
 from identification.prediction.judging.evidence import Gains, evidence
-from identification.prediction.judging.readings import independent_readings
 
 WINDOWS, SAMPLES, STATES = 20, 30, 2
 TIME = np.linspace(0.0, 1.0, SAMPLES)

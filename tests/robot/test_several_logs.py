@@ -104,14 +104,13 @@ def test_the_command_keeps_a_fit_that_is_worse_and_says_so_everywhere(folder, ca
     assert again["d"]["value"] == kept["parameters"]["d"]["value"]
 
 
-def test_a_std_that_one_or_two_windows_cannot_tell_is_called_unknown(folder, capsys):
+def test_that_one_or_two_windows_tell_a_value_is_told(folder, capsys):
     logs = written(folder, measured(1, samples=40))
     said = run(capsys, "fit", folder / "robot.toml", *logs)
-    assert all(p["std"] is None for p in said["parameters"].values())
-    (sentence,) = [s for s in said["verdict"] if "is not known" in s]
-    assert sentence.startswith("The values of J, d are fitted, but their std is not known")
-    assert "the only window cannot be compared with another" in sentence
-    assert "For a std record longer or give more logs" in sentence
+    assert all(p["std"] > 0 for p in said["parameters"].values())
+    (sentence,) = [s for s in said["verdict"] if "One window tells" in s]
+    assert sentence.startswith("One window tells the values of J, d. Their std is right if")
+    assert sentence.endswith("record longer or give more logs.")
 
 
 NOISE = np.random.default_rng(2)

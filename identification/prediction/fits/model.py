@@ -97,7 +97,7 @@ class WindowModel:
     def told_std(self) -> dict[str, float]:
         """Std of the free values, in which the error of the model's steps counts.
 
-        NaN where too few windows tell it, or a value is on a bound.
+        NaN where a value is on a bound.
         """
         std = with_steps(told_std(self.fit), self.finer.values)
         return dict(zip(self.fit.problem.names, std.tolist(), strict=True))

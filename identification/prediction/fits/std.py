@@ -2,12 +2,16 @@
 
     ν_j = ((Σ_b h_bj + w_j)/Σ_b h_bj)² ((Σ_b h_bj)²/Σ_b h_bj² - 1)
     h_bj = a_jᵀ H_b a_j,   w_j = a_jᵀ W² a_j,   a_j = H⁻¹ e_j,   H = Σ_b H_b + W²
+    V_j = a_jᵀ (Σ_y v_y H_y + W²) a_j
     δ = H⁻¹ Σ_w S_wᵀ(I - P_w)(r_w(Δ/4) - r_w(Δ))
     V(Δ/4) = Σ_w ‖(I - P_w)(r_w(Δ/4) - S_w δ)‖²
 
 The variance of a value is a sum over blocks b of windows and a share w of its prior. A variance of
 ν degrees of freedom (Satterthwaite 1946, for clusters Bell and McCaffrey 2002) is too small by a
-factor of up to ν/χ²(ν, 2.5 %): of one window it is nothing, whatever number comes out of it.
+factor of up to ν/χ²(ν, 2.5 %): of one window it is nothing, whatever number comes out of it. With
+few the variance is no smaller than V_j, which takes errors where the value is felt for as large as
+elsewhere: H_y is of the rows of output y, v_y the mean square of its errors along what is slow
+(`readings`).
 
 The std by blocks knows noise and what the model leaves, and nothing of the steps Δ. Where
 dry friction turns within a step, an integrator of any order errs by about Δ, and so does the
@@ -25,6 +29,7 @@ import numpy as np
 from identification.discovery.attempts import attempt
 from identification.discovery.fitted import StepShift
 from identification.model.protocol import finer
+from identification.prediction.fits.readings import slow_square
 from identification.windows.fit import STD_BLOCKS, WindowFit
 
 MIN_FREEDOM = 3.0  # degrees of freedom: the std is right within a factor 4 in 19 cases of 20
@@ -33,17 +38,39 @@ MIN_FREEDOM = 3.0  # degrees of freedom: the std is right within a factor 4 in 1
 def told_std(found: WindowFit) -> np.ndarray:
     """Returns the std of each value by blocks of windows, in its unit, shape (p,).
 
-    It is inf where no window feels the parameter, and NaN where too few windows tell of it for
-    their scatter to be known, or where the value lies on a bound: there the bound holds it, and the
-    windows would have moved it farther.
+    It is inf where no window feels the parameter, and NaN where the value lies on a bound: there
+    the bound holds it, and the windows would have moved it farther.
 
     Args:
         found: a fit.
     """
     std = found.std
-    few = np.isfinite(std) & (degrees_of_freedom(found) < MIN_FREEDOM)
+    few = np.isfinite(std) & is_told_by_few(found)
+    std = np.where(few, np.maximum(std, _pooled_std(found)), std) if few.any() else std
     on_bound = found.problem.prior.space.on_bound(found.q)
-    return np.where(few | (on_bound & np.isfinite(std)), np.nan, std)
+    return np.where(on_bound & np.isfinite(std), np.nan, std)
+
+
+def is_told_by_few(found: WindowFit) -> np.ndarray:
+    """Returns whether so few windows tell each value that their scatter is not known, shape (p,).
+
+    Args:
+        found: a fit.
+    """
+    return np.asarray(degrees_of_freedom(found) < MIN_FREEDOM)
+
+
+def _pooled_std(found: WindowFit) -> np.ndarray:
+    """Returns V^½ in the unit of each value, shape (p,)."""
+    L, ny = found.problem.parts[0].cut.outputs.shape[1:]
+    v, prior = slow_square(found), found.problem.prior
+    inverse = np.linalg.pinv(found.curvature, rcond=1e-14, hermitian=True)
+    meat = np.diag(prior.weight**2)
+    for t in found.tangents:
+        S = t.projected[0][:, : L * ny]
+        S = (S.reshape(len(S), L, ny, -1) * np.sqrt(v)[:, None]).reshape(*S.shape)
+        meat = meat + np.einsum("wmp,wmq->pq", S, S)
+    return np.sqrt(np.diag(inverse @ meat @ inverse)) * prior.space.slope(found.q)
 
 
 def degrees_of_freedom(found: WindowFit) -> np.ndarray:

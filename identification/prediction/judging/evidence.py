@@ -4,7 +4,7 @@
     P_c = mean over resamples of the blocks of exp(E_c/2) / Σ_k exp(E_k/2)
 
 g_cby: gains of blocks b and outputs y with the law c (`identification.windows.blocks`), W windows,
-each with n_y independent readings of output y (`judging.readings`), n: their mean over outputs, k_c
+each with n_y independent readings of output y (`fits.readings`), n: their mean over outputs, k_c
 numbers that c adds. Each output has an error of its own, as in a likelihood whose variances are
 found too: an output that a law predicts to its noise would else count for nothing beside one whose
 noise is larger in units of s. E is twice the gain of a log likelihood with the price that BIC puts
@@ -23,7 +23,7 @@ import numpy as np
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
 from identification.prediction.fits.model import WindowModel
-from identification.prediction.judging.readings import independent_readings
+from identification.prediction.fits.readings import independent_readings
 from identification.windows.blocks import output_gains
 
 RESAMPLES = 2000  # of the blocks: a probability is then known to a hundredth

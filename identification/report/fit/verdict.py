@@ -132,7 +132,7 @@ def _of_records(fit: RecordsFit) -> list[str]:
         *bound_sentences(model.plant.parameters, model.at_bound),
         *_blind(fit),
         *([f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []),
-        *_unknown_std(fit),
+        *_std_by_few(fit),
         _left_by_windows(_count_windows(fit), fit.horizon, rms, floor, _names(fit, "fit")),
     ]
     scale = describe_scale(output_units(fit.records[0].log), model.scale)
@@ -291,25 +291,19 @@ def _blind(fit: RecordsFit) -> list[str]:
     return out
 
 
-def _unknown_std(fit: RecordsFit) -> list[str]:
-    """Returns the sentence on values that are fitted and whose std too few windows tell."""
-    rows = zip(fit.values, fit.std, fit.at_bound, strict=True)
-    few = [n for n, std, at_bound in rows if np.isnan(std) and not at_bound]
+def _std_by_few(fit: RecordsFit) -> list[str]:
+    """Returns the sentence on values that are fitted and of which few windows tell."""
+    rows = zip(fit.values, fit.is_told_by_few, fit.std, fit.at_bound, strict=True)
+    few = [n for n, is_few, std, at_bound in rows if is_few and np.isfinite(std) and not at_bound]
     if not few:
         return []
     count = _count_windows(fit)
-    values, it, their, are = (
-        ("value", "it", "its", "is") if len(few) == 1 else ("values", "them", "their", "are")
-    )
-    told = (
-        "the only window cannot be compared with another"
-        if count == 1
-        else f"too few of the {count} windows depend on {it}"
-    )
+    values, their, it = ("value", "Its", "it") if len(few) == 1 else ("values", "Their", "they")
+    told = "One window tells" if count == 1 else f"Few of the {count} windows tell"
     return [
-        f"The {values} of {', '.join(few)} {are} fitted, but {their} std is not known: a std comes"
-        f" from how much windows differ, and {told}. For a std record longer or give more logs, or"
-        f" compare the {values} with those of a fit of another log."
+        f"{told} the {values} of {', '.join(few)}. {their} std is right if the model errs there as"
+        f" it does elsewhere. To be sure that {it} {'is' if it == 'it' else 'are'} right, record"
+        " longer or give more logs."
     ]
 
 
