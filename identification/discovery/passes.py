@@ -106,6 +106,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "independent_readings": (
         HORIZON, "counts readings whose errors are independent for the evidence, and not windows",
     ),
+    "falls_within_noise": (
+        HORIZON, "names no law that takes less than a tenth of an error that is the sensors'",
+    ),
     "strata_of_records": (
         HORIZON, "tests the mean gain by how blocks scatter within each record, and not by how"
         " records differ",

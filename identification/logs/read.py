@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.bracketed import with_bracketed
 from identification.logs.formats.formats import log_table, refuse_no_log
+from identification.logs.headers import with_headers
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
@@ -119,7 +119,7 @@ def read_log(
         of_matlab=(inputs, measured, optional),
     )
     if lenient:
-        table, sidecar = with_bracketed(table, {"time", *columns}, sidecar)
+        table, sidecar = with_headers(table, {"time", *columns}, sidecar)
     for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",

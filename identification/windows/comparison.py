@@ -35,8 +35,9 @@ class Prediction:
     # the same of each output of each record by itself, in the geometric mean: one that errs most,
     # whatever the model, does not decide alone
     typical_falls: tuple[float, ...]
-    # the same at the horizon, of the output of which it is largest
-    output_fall: float
+    output_falls: tuple[float, ...]  # the same at the horizon, of each output
+    # mean square of each output's error under the first model over that of its noise; inf without
+    times_noise: tuple[float, ...]
     record_falls: tuple[float, ...]  # relative fall of the mean square by record, at the horizon
     # gain of each block of each record, at the horizon, shape (B,) a record
     blocks: tuple[np.ndarray, ...]
@@ -115,9 +116,18 @@ def _compare(without: Unseen, with_it: Unseen, by_outputs: bool, by_records: boo
         t=t, chance=chance, rank_chance=ranks_above_zero(every), gain=means[at], gains=means,
         fall=falls[at], falls=tuple(falls),
         typical_falls=tuple(1 - float(np.exp(logs.mean())) for logs in of_outputs),
-        output_fall=1 - float(np.exp(of_outputs[at].min())),
+        output_falls=tuple((1 - np.exp(of_outputs[at])).tolist()),
+        times_noise=_times_noise(without, by_outputs),
         record_falls=tuple(1 - float(b.mean() / a.mean()) for a, b in each), blocks=tuple(blocks),
     )  # fmt: skip
+
+
+def _times_noise(unseen: Unseen, by_outputs: bool) -> tuple[float, ...]:
+    """Returns the mean square of each output, or of all together, over that of the noise."""
+    squares = np.concatenate(_powers(unseen, 1.0, by_outputs)).mean(axis=0)
+    noise = unseen.noise if by_outputs else np.array([unseen.floor])
+    ratios = np.divide(squares, noise, out=np.full(len(squares), np.inf), where=noise > 0)
+    return tuple(ratios.tolist())
 
 
 def _powers(unseen: Unseen, length: float, by_outputs: bool) -> list[np.ndarray]:

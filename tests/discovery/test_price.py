@@ -91,7 +91,8 @@ def prediction(blocks, record_falls, t=5.0, chance=1e-6, rank_chance=1.0):
     """A gain over every length, of records with these blocks and falls."""
     return Prediction(
         t=t, chance=chance, rank_chance=rank_chance, gain=0.1, gains=(0.1,), fall=0.1,
-        falls=(0.1,), typical_falls=(0.1,), output_fall=0.1, record_falls=record_falls,
+        falls=(0.1,), typical_falls=(0.1,), output_falls=(0.1,), times_noise=(9.0,),
+        record_falls=record_falls,
         blocks=blocks,
     )  # fmt: skip
 

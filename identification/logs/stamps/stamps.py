@@ -19,8 +19,8 @@ from decimal import Decimal
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.bracketed import bracketed
 from identification.logs.cures import lines_of
+from identification.logs.headers import read_headers
 from identification.logs.names import quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar
@@ -130,8 +130,8 @@ def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]
 
     def wanted(names: Sequence[str]) -> set[str]:
         pair = stamps_apart([to.get(n, n) for n in names], sidecar) or ()
-        in_brackets = bracketed(names, asked, sidecar)
-        return {n for n in names if to.get(n, n) in {*asked, *pair} or n in in_brackets}
+        by_header = read_headers(names, asked, sidecar)
+        return {n for n in names if to.get(n, n) in {*asked, *pair} or n in by_header}
 
     return wanted
 

@@ -120,7 +120,7 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
     Returns:
         "chance": the gain may be luck. "lengths": windows of some length are predicted worse.
         "record": a record is predicted worse, though physics is the same in all of them.
-        "little": it takes away too little of the error of any output to matter.
+        "little": it takes away too little of the error of any output to matter, or of its noise.
     """
     luck = luck_of(found, refits, options)
     if not (found.t > options.min_proof_t and luck < options.significance):
@@ -129,7 +129,22 @@ def find_doubt(found: Prediction, refits: int, options: DiscoveryOptions) -> Dou
         return "lengths"
     if contradicts_a_record(found, options):
         return "record"
-    return None if found.output_fall > options.min_fall else "little"
+    return None if _matters(found, options) else "little"
+
+
+def _matters(found: Prediction, options: DiscoveryOptions) -> bool:
+    """Returns whether an effect takes away enough of the error of an output.
+
+    Where an output errs by its noise and less than a tenth more, the error is said to be noise
+    (`identification.prediction.verdict.remaining`), and what takes away less than that is none
+    that a log could be said to disagree by. So small an effect is also what the steps of a
+    simulation make, which are no robot's.
+    """
+    most = 1 + options.min_gap_share if uses(options, "falls_within_noise") else 0.0
+    return any(
+        fall > (options.min_gap_share if times < most else options.min_fall)
+        for fall, times in zip(found.output_falls, found.times_noise, strict=True)
+    )
 
 
 def luck_of(found: Prediction, refits: int, options: DiscoveryOptions) -> float:
