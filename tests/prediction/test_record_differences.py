@@ -15,6 +15,7 @@ from identification.effects.effect import Candidate, in_each_record
 from identification.prediction.discovery import WINDOWS, discover_records
 from identification.prediction.judging.judging import judged
 from identification.prediction.judging.odds import find_odds
+from identification.prediction.moves import likeliest_of_set as moves
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.moves.likeliest_of_set import (
     is_alike,
@@ -131,14 +132,14 @@ def test_inputs_that_come_early_in_all_records_alike_are_a_matter_of_clocks():
     assert all(v == pytest.approx(-0.015, abs=1e-3) for v, _ in told.values.values())
 
 
-def with_shift(*shifts):
+def with_shift(*shifts, effects=("time_shift", "delay")):
     """A search's state whose model has a shift of each of some records; the last one confirms."""
     logs = [replace(record(k, 600, {"time_shift.tau@drive": s}, plant=pendulum()), name=f"{k}")
             for k, s in enumerate(shifts, 1)]  # fmt: skip
     base = replace(nominal_model(), horizon=0.26)  # the inputs jump within windows
     task = RecordsTask(
         nominal_model=base, records=as_records(logs[:-1], logs[-1:]),
-        effects=listed("time_shift", "delay"), options=DiscoveryOptions(),
+        effects=listed(*effects), options=DiscoveryOptions(),
     )  # fmt: skip
     state = WINDOWS.begin(task, print)
     best = max((s for s in state.scores if s.candidate.effect.own), key=lambda s: s.fall).candidate
@@ -166,6 +167,22 @@ def test_a_shift_that_all_records_have_alike_becomes_a_delay_and_is_no_rival_of_
     assert law.is_proven
     odds = find_odds(replace(law, alternatives=(shift,)), model)
     assert (odds.own, odds.rivals) == (1.0, ())
+
+
+@pytest.mark.parametrize(("factor", "name"), [(0.5, "time_shift"), (2.0, "offset")])
+def test_another_law_takes_the_place_of_an_early_shift_only_where_it_is_likelier(
+    monkeypatch, factor, name
+):
+    """No delay is negative, so that the law of the shift itself is never proven."""
+    _, state = with_shift(-0.016, -0.016, effects=("time_shift", "delay", "offset"))
+    (shift,) = state.accepted
+    offset = next(s.candidate for s in state.scores if s.candidate.effect.name == "offset")
+    other = judged(state.nominal, with_one(state, state.nominal, offset), 1, state.task.options)
+    gains = replace(shift.gains, blocks=factor * shift.gains.blocks)
+    other = replace(other, doubt=None, gains=gains, numbers=shift.numbers)
+    monkeypatch.setattr(moves, "_judged_together", lambda *given: [shift, other])
+    _, (kept,), _ = likeliest_of_set(without_edges(state), print)
+    assert kept.candidate.effect.name == name
 
 
 def test_errors_before_and_after_are_of_the_same_windows_where_a_shift_has_cut_them():

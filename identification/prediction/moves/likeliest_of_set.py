@@ -6,7 +6,7 @@ imitates what is found next. So after each effect that is found, an earlier one 
 likeliest is asked again: it and the others are refitted in its place, beside all that was found
 since. The likeliest that unseen records prove there takes the place, and the odds are those of
 these refits. A difference between records that is the same in all of them is a law of the robot,
-which is asked in its place.
+which is asked in its place; another law takes it only where it is likelier.
 
     |a - b| < 3 √(σ_a² + σ_b²)        values a, b of any two records, and their std
 """
@@ -77,7 +77,8 @@ def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Con
         return None
     must_be_law = is_alike(old, model)
     asked = [c.candidate for c in (old, *old.alternatives)]
-    asked += laws_of_records(old.candidate, task.effects) if must_be_law else []
+    same = laws_of_records(old.candidate, task.effects) if must_be_law else []
+    asked += same
     each = [
         with_one(state, without, c) for c in {(*c.key, str(c.shape)): c for c in asked}.values()
     ]
@@ -89,7 +90,11 @@ def _asked_again(state: WindowSearch, model: WindowModel, old: Contender) -> Con
     ]  # fmt: skip
     if not proven:
         return None
-    best = max(proven, key=lambda pair: pair[0])[1]
+    share, best = max(proven, key=lambda pair: pair[0])
+    of_old = [s for s, c in zip(shares, found, strict=True) if c.candidate.key == old.candidate.key]
+    is_other = best.candidate.effect.name not in {c.effect.name for c in same}
+    if must_be_law and is_other and max(of_old, default=0.0) > share:
+        return None  # its law is not proven, as one of outputs that are early, and no other is it
     # another shape of the same law is no rival
     others = (o for o in found if o.candidate.key != best.candidate.key and is_rival(o))
     return replace(best, alternatives=tuple(others))
