@@ -146,7 +146,8 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
         HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),
     "sizes_of_last_fit": (
-        HORIZON, "names no law whose sizes are within their std in the fit with the model's steps",
+        HORIZON, "names no law that the fit with the model's steps leaves less than half of, within"
+        " its std",
     ),
     "drop_doubtful": (
         HORIZON, "keeps effects that are sure where others are in doubt, and tells what is left",

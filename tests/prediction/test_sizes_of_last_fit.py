@@ -16,6 +16,7 @@ from identification.prediction.discovery import WINDOWS
 from identification.prediction.judging.judging import judged
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.task import RecordsTask
+from identification.prediction.verdict import last_fit
 from identification.prediction.verdict.last_fit import times_std, with_last_fit
 from identification.windows.records import as_records
 
@@ -68,10 +69,13 @@ def test_what_has_no_std_is_not_asked():
     assert times_std(model({f"{CURVE}speed.c": 0.0}, [[1.0]]), curve) == np.inf
 
 
-@pytest.mark.parametrize(("true", "without", "kept"), [
-    (0.0, (), 0), (0.0, ("sizes_of_last_fit",), 1), (0.01, (), 1),
+@pytest.mark.parametrize(("true", "times", "without", "kept"), [
+    (0.0, 100.0, (), 0),  # the steps of the search made it, and the last fit takes it away
+    (0.0, 100.0, ("sizes_of_last_fit",), 1),
+    (0.0, 1.0, (), 1),  # its size stays; unseen data had to decide
+    (0.01, 100.0, (), 1),  # the last fit leaves much of it
 ])  # fmt: skip
-def test_the_last_fit_takes_out_what_it_leaves_nothing_of(true, without, kept):
+def test_the_last_fit_takes_out_what_it_leaves_nothing_of(monkeypatch, true, times, without, kept):
     logs = records(2, {"quadratic_friction.c@hinge": true}, samples=200)
     task = RecordsTask(
         nominal_model=nominal_model(), records=as_records(logs[:1], logs[1:]),
@@ -79,8 +83,13 @@ def test_the_last_fit_takes_out_what_it_leaves_nothing_of(true, without, kept):
     )  # fmt: skip
     state = WINDOWS.begin(task, print)
     drag = next(s.candidate for s in state.scores)
-    refitted = with_one(state, state.model, drag)
-    found = judged(state.model, refitted, 1, task.options)
-    last = with_last_fit(replace(state, model=refitted, accepted=(found,)))
+    fitted = with_one(state, state.model, drag)
+    found = judged(state.model, fitted, 1, task.options)
+    # The search had it that many times as large.
+    at = fitted.fit.problem.names.index("quadratic_friction.c@hinge")
+    q = np.where(np.arange(len(fitted.fit.q)) == at, times, 1.0) * fitted.fit.q
+    begun = replace(fitted, fit=replace(fitted.fit, q=q))
+    monkeypatch.setattr(last_fit, "as_last_fit", lambda *given: fitted)
+    last = with_last_fit(replace(state, model=begun, accepted=(found,)))
     assert len(last.accepted) == len(last.model.candidates) == kept
     assert [r.doubt for r in last.rejected] == ["size"] * (1 - kept)

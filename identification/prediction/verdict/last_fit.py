@@ -3,10 +3,12 @@
     z² = sᵀ P_ss s       sizes s of an effect; P = C⁻¹, C: covariance of its sizes and free shapes
 
 A search takes longer steps where it can, and the last fit those of the user's model. What the steps
-have made is nothing there: its size is within its own std. Several sizes that the data trade for
-one another may each be within its std and be known together, and a size for a shape, so that z asks
-all sizes at once, beside shapes that stay. An effect with z of less than two is taken out, and the
-others are fitted again. A curve is judged as a whole by its evidence, which pays for every node.
+have made is nothing there: the last fit takes away more than half of every size, and what stays is
+within its own std. Several sizes that the data trade for one another may each be within its std and
+be known together, and a size for a shape: z asks all sizes at once, beside shapes that stay. An
+effect with z of less than two is then taken out, and the others are fitted again. One that keeps
+its size keeps its name, whatever its std: what is free beside it may do as much, and unseen data
+have decided between the two. A curve is judged as a whole by its evidence.
 """
 
 from __future__ import annotations
@@ -39,16 +41,18 @@ def with_last_fit(state: WindowSearch) -> WindowSearch:
     last = partial(as_last_fit, model, task.horizon, task.confirm, is_weighed)
     final = attempt(None, last) or model
     nominal = final if state.nominal is model else state.nominal
-    return _without_nothing(replace(state, model=final, nominal=nominal))
+    return _without_nothing(model, replace(state, model=final, nominal=nominal))
 
 
-def _without_nothing(state: WindowSearch) -> WindowSearch:
+def _without_nothing(before: WindowModel, state: WindowSearch) -> WindowSearch:
     """Returns the state without effects of which the last fit leaves nothing."""
-    if not uses(state.task.options, "sizes_of_last_fit"):
-        return state
     least = state.task.options.min_proof_t
-    gone = [a for a in state.accepted if times_std(state.model, a.candidate) < least]
-    if not gone:
+    gone = [
+        a for a in state.accepted
+        if is_taken_away(before, state.model, a.candidate)
+        and times_std(state.model, a.candidate) < least
+    ]  # fmt: skip
+    if not gone or not uses(state.task.options, "sizes_of_last_fit"):
         return state
     rest = [a for a in state.accepted if a not in gone]
     kept = [a.candidate for a in rest]
@@ -57,6 +61,18 @@ def _without_nothing(state: WindowSearch) -> WindowSearch:
         return state
     rejected = tuple(replace(a, doubt="size") for a in gone)
     return replace(state, model=model, accepted=tuple(rest), rejected=(*rejected, *state.rejected))
+
+
+def is_taken_away(before: WindowModel, after: WindowModel, effect: Candidate) -> bool:
+    """Returns whether a fit has taken away more than half of every free size of an effect.
+
+    Args:
+        before: with the effect.
+        after: the same model, fitted again.
+        effect: that both have.
+    """
+    old, new = before.fit.values, after.fit.values
+    return all(abs(new[n]) < abs(old[n]) / 2 for n in effect.free if n in old and n in new)
 
 
 def times_std(model: WindowModel, effect: Candidate) -> float:
