@@ -39,7 +39,7 @@ _OF_TIME = "t"  # what many a log calls its time
 
 
 def read_headers(
-    names: Sequence[str], asked: Collection[str], sidecar: Sidecar
+    names: Sequence[str], asked: Collection[str], sidecar: Sidecar, mapped: Collection[str] = ()
 ) -> Mapping[str, tuple[str, str]]:
     """Returns what each column is that is asked for by nearly this name, and its unit, or "".
 
@@ -47,19 +47,21 @@ def read_headers(
         names: of the columns of the file.
         asked: names of the columns that are read.
         sidecar: what the log's TOML says.
+        mapped: those of `asked` that a user has written, so that their own headers say their unit.
     """
     known = {*(sidecar.columns.get(n, n) for n in names)}
     lacking = {*asked} - known
-    rest = [n for n in names if n not in {*asked, *sidecar.ignore}]
+    rest = [n for n in names if n not in {*asked, *sidecar.ignore} or n in mapped]
     found: dict[str, tuple[str, str]] = {}
     ranks: dict[str, int] = {}
     for column in rest:
+        if column in sidecar.columns or column in mapped:
+            _, (_, unit) = next(_readings(column))
+            if unit:
+                found[column] = (sidecar.columns.get(column, column), unit)
+            continue
         for rank, (header, unit) in _readings(column):
             name = sidecar.columns.get(header, header)
-            if column in sidecar.columns:
-                if unit and rank == 0:
-                    found[column] = (sidecar.columns[column], unit)
-                break
             same = [n for n in lacking if _is_same(name, n, rank)]
             if len(same) == 1:
                 if rank < ranks.get(same[0], rank + 1):  # a header that is nearer comes before
@@ -93,18 +95,21 @@ def _is_same(name: str, asked: str, rank: int) -> bool:
     return name == asked if rank < 2 else name.casefold() == asked.casefold()
 
 
-def with_headers(table: Table, asked: Collection[str], sidecar: Sidecar) -> tuple[Table, Sidecar]:
+def with_headers(
+    table: Table, asked: Collection[str], sidecar: Sidecar, mapped: Collection[str] = ()
+) -> tuple[Table, Sidecar]:
     """Returns a table that tells which columns are so, and what its TOML then would say of them.
 
     Args:
         table: as it stands in its file.
         asked: names of the columns that are read.
         sidecar: what the log's TOML says.
+        mapped: of `read_headers`.
 
     Raises:
         InputError: several columns are as near to one name.
     """
-    found = read_headers(table.all_names, asked, sidecar)
+    found = read_headers(table.all_names, asked, sidecar, mapped)
     if not found:
         return table, sidecar
     columns = {column: name for column, (name, _) in found.items()}
@@ -122,7 +127,10 @@ def with_headers(table: Table, asked: Collection[str], sidecar: Sidecar) -> tupl
     if not told:
         return table, sidecar
     names = [columns[c] + (f" [{units[columns[c]]}]" if columns[c] in units else "") for c in told]
+    what, are, say = (
+        ("Column", "is", "its header says") if len(told) == 1
+        else ("Columns", "are", "their headers say")
+    )  # fmt: skip
     return table.told(
-        f"Columns {listed(told)} of log {table.path.stem!r} are read as {listed(names)}, as their"
-        " headers say."
+        f"{what} {listed(told)} of log {table.path.stem!r} {are} read as {listed(names)}, as {say}."
     ), sidecar

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -57,6 +57,7 @@ def read_log(
     named_in: Path | None = None,
     lenient: bool = False,
     said: Mapping[str, Any] | None = None,
+    mapped: Collection[str] = (),
     overrule: str = "",
     trust_rows: bool = False,
     poses: Sequence[Pose] = (),
@@ -80,6 +81,7 @@ def read_log(
         lenient: columns that are not asked for are left out, uneven time stamps and missing cells
             are put on an even grid (`identification.logs.stamps.resampling`), and angles lose
             their jumps by whole turns (`identification.logs.wrapped`); the log's remarks say so.
+        mapped: columns that a user has written for others, so that their headers say their unit.
         said: keys of the sidecar that hold where it does not say otherwise.
         overrule: how a user may overrule `limits` and `rates`, for their messages.
         trust_rows: whether rows that look like those of a second publisher are read; else they are
@@ -119,7 +121,7 @@ def read_log(
         of_matlab=(inputs, measured, optional),
     )
     if lenient:
-        table, sidecar = with_headers(table, {"time", *columns}, sidecar)
+        table, sidecar = with_headers(table, {"time", *columns}, sidecar, mapped)
     for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",

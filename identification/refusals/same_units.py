@@ -20,6 +20,7 @@ import numpy as np
 from identification.logs.log import Log
 from identification.logs.units import UNITS
 from identification.model.predictor import output_columns
+from identification.storage.files import toml_key
 
 SERVO = {"qpos": ("m", "rad"), "qvel": ("m/s", "rad/s")}  # of a wanted motion: slide, hinge
 PIECES = 20  # of a log
@@ -52,7 +53,8 @@ def different_units(model: mujoco.MjModel, log: Log, column: Mapping[str, str]) 
                 if of == unit and 1 / NEAR < b * factor**power < NEAR:
                     return (
                         f"{column[pair.q]} moves {b:.3g} times as far as {column[pair.other]}"
-                        f' says; write {column[name]} = "{word}" under [units] of the log\'s TOML'
+                        f' says; write {toml_key(column[name])} = "{word}" under [units] of the'
+                        " log's TOML"
                     )
     return None
 

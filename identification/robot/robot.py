@@ -221,7 +221,8 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         log = read_log(
             path, [column[n] for n in inputs], [column[n] for n in outputs], unread,
             poses=poses, units=asked, named_in=file.path,
-            lenient=True, said=file.log, trust_rows="rows" in file.trust,
+            lenient=True, said=file.log, mapped=tuple(file.columns.values()),
+            trust_rows="rows" in file.trust,
         )  # fmt: skip
     except MissingColumnsError as error:
         logged = [f'"{n}"' for n in outputs if column[n] not in error.missing]

@@ -34,7 +34,7 @@ def test_the_log_is_the_same_as_in_si(tmp_path, head, scale):
     np.testing.assert_allclose(log.inputs[:, 0], np.sin(TIME), atol=1e-9)
     np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME), atol=1e-9)
     (told,) = log.remarks
-    assert told.endswith("as their headers say.")
+    assert told.endswith(("as their headers say.", "as its header says."))
 
 
 def test_what_the_toml_says_of_units_comes_before(tmp_path):
@@ -47,6 +47,34 @@ def test_what_the_toml_says_of_units_comes_before(tmp_path):
 def test_a_column_that_the_toml_names_otherwise_has_its_unit_too(tmp_path, units, scale):
     log = read(tmp_path, "time [s],u,pos [deg]", f'[columns]\n"pos [deg]" = "q"\n{units}')
     np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME) * scale, atol=1e-9)
+
+
+@pytest.mark.parametrize(("column", "scale"), [
+    ("pos_deg", np.pi / 180), ("pos [mrad]", 1e-3), ("pos (°)", np.pi / 180), ("pos", 1.0),
+    ("pos_motor", 1.0), ("pos_m", 1.0),
+])  # fmt: skip
+@pytest.mark.parametrize("where", ["log", "robot"])
+def test_a_column_that_a_user_maps_has_the_unit_of_its_header(tmp_path, column, scale, where):
+    """The log's TOML says which column of the robot it is, or the robot's file asks for it."""
+    rows = np.column_stack([TIME, np.sin(TIME), np.cos(TIME)])
+    np.savetxt(tmp_path / "log.csv", rows, "%.12g", ",", header=f"time,u,{column}", comments="")
+    name = "q" if where == "log" else column
+    if where == "log":
+        (tmp_path / "log.toml").write_text(f'[columns]\n"{column}" = "q"\n')
+    mapped = () if where == "log" else (column,)
+    log = read_log(
+        tmp_path / "log.csv", ["u"], [name], lenient=True, units={name: "rad"}, mapped=mapped
+    )
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME) * scale, atol=1e-9)
+    assert len(log.remarks) == (scale != 1.0)
+
+
+def test_a_name_of_the_model_says_no_unit(tmp_path):
+    """A sensor body_cm is one of a centre of mass."""
+    rows = np.column_stack([TIME, np.sin(TIME), np.cos(TIME)])
+    np.savetxt(tmp_path / "log.csv", rows, delimiter=",", header="time,u,body_cm", comments="")
+    log = read_log(tmp_path / "log.csv", ["u"], ["body_cm"], lenient=True, units={"body_cm": "m"})
+    np.testing.assert_allclose(log.outputs[:, 0], np.cos(TIME), atol=1e-9)
 
 
 def test_of_two_columns_of_one_name_none_is_guessed(tmp_path):

@@ -12,6 +12,7 @@ from identification.discovery.result import Discovery
 from identification.quantities import held, quantity
 from identification.report.discovery.finding_words import describe_finding, sentence
 from identification.report.discovery.horizon_gap import find_gap
+from identification.report.discovery.longer_horizon import longer_sentences
 from identification.report.discovery.missing_place import find_place
 from identification.report.discovery.named_words import basis_sentence, named_sentences
 from identification.report.discovery.needed_forces import MUCH, NeededForce, needed_sentences
@@ -70,7 +71,7 @@ def further_sentences(found: Discovery) -> list[str]:
 
 def _verdict(found: Discovery) -> list[str]:
     if found.verdict == "nothing missing":
-        return [nothing_sentence(found), *_findings(found)]
+        return [nothing_sentence(found), *longer_sentences(found), *_findings(found)]
     if found.verdict == "unknown effect":
         return _unknown(found)
     plant = found.final.plant
