@@ -145,10 +145,6 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "priors_of_last_fit": (
         HORIZON, "weighs outputs and priors of the last fit by its own errors, which are smaller",
     ),
-    "sizes_of_last_fit": (
-        HORIZON, "names no law that the fit with the model's steps leaves less than half of, within"
-        " its std",
-    ),
     "drop_doubtful": (
         HORIZON, "keeps effects that are sure where others are in doubt, and tells what is left",
     ),
