@@ -1,8 +1,8 @@
 """The proof of a set of effects: each member beside the others, and all of them together.
 
 Each must be proven on unseen records as an effect that was found alone is, with chance that pays
-for all refits; the weakest that is not is left out. The set as a whole must hold with the roles of
-the records exchanged.
+for all refits, and by both roles of the records where it misses chance alone; the weakest that is
+not proven is left out. The set as a whole must hold with the roles of the records exchanged.
 """
 
 from __future__ import annotations
@@ -17,7 +17,11 @@ from identification.prediction.fits.model import WindowModel
 from identification.prediction.judging.extension import refitted, with_fitting_steps
 from identification.prediction.judging.judging import judged
 from identification.prediction.judging.trial import Contender, compared, find_doubt
-from identification.prediction.selection.exchange import exchanged, is_contradicted
+from identification.prediction.selection.exchange import (
+    exchanged,
+    is_contradicted,
+    with_both_roles,
+)
 from identification.prediction.selection.set_choice import find_members
 from identification.prediction.selection.set_members import Key
 from identification.prediction.selection.smooth_rivals import without_imitated
@@ -77,7 +81,25 @@ def _beside(state: WindowSearch, model: WindowModel, key: Key, refits: int) -> C
     if uses(task.options, "states_of_others"):
         without, (best,) = at_their_best(without, [best], task.horizon, task.confirm)
     found = judged(without, best, max(1, refits), task.options)
+    found = _by_both_roles(state, without, found)
     return without_imitated(without, found, task.options)
+
+
+def _by_both_roles(state: WindowSearch, without: WindowModel, found: Contender) -> Contender:
+    """Returns a member, judged by both roles of the records where it misses chance alone.
+
+    Args:
+        state: whose records change places.
+        without: the model with the other members.
+        found: the member beside them.
+    """
+    task = state.task
+    if found.doubt != "chance" or not uses(task.options, "proof_by_both_roles"):
+        return found
+    other = exchanged(without, task.records, task.horizon)
+    if other is None:
+        return found
+    return with_both_roles([found], other, task.records, task.horizon, task.options)[0]
 
 
 def _is_contradicted(state: WindowSearch, parent: WindowModel, whole: WindowModel) -> bool:

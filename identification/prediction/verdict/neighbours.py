@@ -16,8 +16,10 @@ is beside it. It must also be more likely than not that this is no luck: what ac
 as a stop does, has a large chance whatever it explains. No law is exact on a real robot, so that
 less than this speaks against none. A law of a sensor is of the joint that this measures; one of an
 input or a body has no joint of its own, and curves at all joints count. A curve counts, in the
-model or beside it, where it may draw what the law misses: it depends on a variable of the law. A
-force of the position that is left beside a friction is another thing that is missing.
+model or beside it, where it may draw what the law misses: it depends on a variable of the law, and
+beside one of inputs not on positions alone, because an input that is wrong acts as a force of the
+rate, the drive or the time. A force of the position that is left beside a friction or a delay is
+another thing that is missing.
 
 A force of two variables leaves what no single curve draws. So the smooth force of the law's joint
 is asked as well (`identification.prediction.verdict.yardstick`): all its curves at once, and where
@@ -139,14 +141,22 @@ def _may_be_of(other: Candidate, law: Candidate) -> bool:
     of_law = variables(law.effect)
     if acts_on_joints(other.effect):
         return share_a_joint(other, law) and may_draw(other.effect, law.effect)
-    is_of_inputs = "input" in other.where
-    return not of_law or bool(of_law & ({"v", "f_u"} if is_of_inputs else {*POSITIONS}))
+    return not of_law or bool(of_law & ({"v", "f_u"} if _is_of_inputs(other) else {*POSITIONS}))
 
 
 def _is_beside(curve: Candidate, law: Candidate) -> bool:
     """Returns whether a candidate is a curve that may draw what a law misses at its joint."""
-    is_of_law = curve.effect.is_curve and may_draw(curve.effect, law.effect)
-    return is_of_law and share_a_joint(curve, law)
+    effect = curve.effect
+    if not effect.is_curve or not share_a_joint(curve, law):
+        return False
+    if _is_of_inputs(law):
+        return not variables(effect) <= {*POSITIONS}
+    return may_draw(effect, law.effect)
+
+
+def _is_of_inputs(c: Candidate) -> bool:
+    """Returns whether an effect changes inputs and is no force at a joint."""
+    return not acts_on_joints(c.effect) and "input" in c.where
 
 
 def share_a_joint(a: Candidate, b: Candidate) -> bool:
