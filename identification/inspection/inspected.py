@@ -11,14 +11,8 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.inspection.answers import Answer, find_answers
-from identification.inspection.guesses import (
-    Role,
-    family,
-    is_time,
-    role_of,
-    time_unit,
-    unit_of,
-)
+from identification.inspection.guesses import family, is_time, time_unit, unit_of
+from identification.logs.column_words import Role, role_of
 from identification.logs.formats.formats import log_table, refuse_no_log
 from identification.logs.names import listed, lookup
 from identification.logs.repeats import repeat_sentence, repeated_share

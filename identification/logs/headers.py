@@ -56,7 +56,7 @@ def read_headers(
     ranks: dict[str, int] = {}
     for column in rest:
         if column in sidecar.columns or column in mapped:
-            _, (_, unit) = next(_readings(column))
+            _, unit = name_and_unit(column)
             if unit:
                 found[column] = (sidecar.columns.get(column, column), unit)
             continue
@@ -71,6 +71,11 @@ def read_headers(
                     found[column] = (same[0], unit)
                 break
     return found
+
+
+def name_and_unit(column: str) -> tuple[str, str]:
+    """Returns the name that a header gives a column, and its known unit, "" where it has none."""
+    return next(_readings(column))[1]
 
 
 def _readings(column: str) -> Iterator[tuple[int, tuple[str, str]]]:
