@@ -73,6 +73,12 @@ def read_headers(
     return found
 
 
+def split_header(column: str) -> tuple[str, str]:
+    """Returns the name and what stands in brackets behind it, "" where nothing does."""
+    match = _BRACKETS.fullmatch(column)
+    return (column, "") if match is None else (match["name"], match["unit"])
+
+
 def name_and_unit(column: str) -> tuple[str, str]:
     """Returns the name that a header gives a column, and its known unit, "" where it has none."""
     return next(_readings(column))[1]

@@ -37,6 +37,7 @@ from identification.logs.table import (
     converted,
     renamed,
 )
+from identification.logs.times import told_of_times
 from identification.logs.units import check_si
 from identification.logs.wrapped import without_wraps
 from identification.storage.files import readable
@@ -121,7 +122,9 @@ def read_log(
         of_matlab=(inputs, measured, optional),
     )
     if lenient:
-        table, sidecar = with_headers(table, {"time", *columns}, sidecar, mapped)
+        table, found = with_headers(table, {"time", *columns}, sidecar, mapped)
+        table = told_of_times(table, found, is_said="time" in sidecar.columns.values())
+        sidecar = found
     for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",
