@@ -20,6 +20,7 @@ from identification.logs.repeats import repeat_sentence, repeated_share
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.stamps.stamps import seconds_of, with_time
+from identification.logs.stamps.standing import columns_of_time, refuse_standing
 from identification.logs.table import Table, renamed
 from identification.logs.times import TIME, looks_like_time, times_sentence
 from identification.logs.units import to_si
@@ -110,6 +111,7 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
     table = renamed(table, sidecar)
     if len(table.data) < MIN_ROWS:
         raise InputError(f"{path} has fewer than {MIN_ROWS} rows; record the log again")
+    of_time = columns_of_time(table, sidecar)
     table, name = _with_time_found(table, sidecar)
     if not name and not sidecar.sampling_time:
         raise InputError(
@@ -117,12 +119,14 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
             f' one that is as COLUMN = "time" under [columns] in {sidecar.path}, or sampling_time'
             " = 0.01 (in seconds) into it"
         )
-    guessed = time_unit(table[name]) if name else "s"
-    unit = sidecar.units.get(TIME) or name_and_unit(name)[1] or guessed
-    declared = grid(0.0, sidecar.sampling_time or 1.0, len(table.data))
-    time: FloatArray = declared
+    unit = sidecar.units.get(TIME) or name_and_unit(name)[1]
+    time: FloatArray = grid(0.0, sidecar.sampling_time or 1.0, len(table.data))
     if name:
+        seconds = table[name] * to_si(unit or "s")[1]
+        refuse_standing(table, seconds, of_time or (name,), sidecar)
+        unit = unit or time_unit(table[name])
         time = (table[name] - table[name][0]) * to_si(unit)[1]
+    unit = unit or "s"
     values = {n: table[n] for n in table.names if n != name}
     full = {n: x for n, x in values.items() if np.isfinite(x).sum() >= MIN_ROWS}
     farthest: dict[str, float] = {}  # columns of a family have one unit
@@ -154,11 +158,11 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
 def _with_time_found(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
     """Returns a table and its column of time, "" where it has none; it tells of others."""
     times = [n for n in table.names if is_time(n, table[n])]
-    headers = read_headers(table.names, {TIME}, sidecar)
-    by_header = [n for n, (of, _) in headers.items() if of == TIME and n in times]
+    headers = [n for n, (of, _) in read_headers(table.names, {TIME}, sidecar).items() if of == TIME]
+    by_header = [n for n in headers if n in times]
     names = table.names
     table = table if by_header else with_time(table, sidecar)
-    name = TIME if TIME in table.names else next(iter([*by_header, *times]), "")
+    name = TIME if TIME in table.names else next(iter([*by_header, *times, *headers]), "")
     others = [n for n in names if n != name and looks_like_time(n)]
     if name in names and others and TIME not in sidecar.columns.values():
         table = table.told(times_sentence(table.path, name, others, sidecar.path))

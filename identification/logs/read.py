@@ -28,6 +28,7 @@ from identification.logs.stamps.publishers import (
 )
 from identification.logs.stamps.resampling import even_out
 from identification.logs.stamps.stamps import wanted_columns, with_time, without_repeated
+from identification.logs.stamps.standing import columns_of_time, refuse_standing
 from identification.logs.table import (
     Table,
     check_columns,
@@ -141,6 +142,7 @@ def read_log(
             f"'zeros' in {sidecar.file_of('zeros')} has one for time, whose first stamp may be any;"
             " leave it out"
         )
+    of_time = columns_of_time(table, sidecar)
     table = with_time(renamed(table, sidecar), sidecar)
     if "time" not in table.names and sidecar.sampling_time:
         time = grid(0.0, sidecar.sampling_time, len(table.data))
@@ -151,6 +153,7 @@ def read_log(
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
     table = with_angles(converted(table, sidecar, factors), poses)
     gaps: tuple[tuple[float, float], ...] = ()
+    refuse_standing(table, table["time"], of_time, sidecar)
     if lenient:
         check_stamps(table)
         check_possible(table)  # a log of a robot; others may hold any number
