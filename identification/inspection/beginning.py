@@ -17,7 +17,7 @@ from identification.inspection.inspected import SAID, Inspection, answers_of
 from identification.inspection.matching import BY_PLACE, SAME, match
 from identification.inspection.needs import limits_of, needs_of, unanswered
 from identification.inspection.words import answer_sentences
-from identification.logs.column_words import Role
+from identification.logs.column_words import Role, unit_by_words
 from identification.logs.swing import FEWEST, part_of_swing
 from identification.logs.units import to_si
 from identification.model.scaled_servo import is_scaled_servo, scaling
@@ -114,7 +114,8 @@ def _serves_torques(found: Inspection, model: mujoco.MjModel, matches: Sequence[
 
 def _motors(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection) -> dict[str, str]:
     """Returns the motors that a model without actuators needs for the torques in a log."""
-    forces = {c.name for c in found.columns if c.unit and to_si(c.unit)[0] in ("N m", "N")}
+    units = {c.name: to_si(c.unit)[0] if c.unit else unit_by_words(c.name) for c in found.columns}
+    forces = {name for name, unit in units.items() if unit in ("N m", "N")}
     if model.nu or not forces:
         return {}
     lacking = [Channel(name, joint, True) for joint, name in motors_to_add(spec).items()]

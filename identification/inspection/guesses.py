@@ -10,9 +10,11 @@ import re
 import numpy as np
 
 from identification.logs.column_words import unit_by_words, words_of
+from identification.logs.headers import name_and_unit
 from identification.logs.names import group
 from identification.logs.sampling import FloatArray
 from identification.logs.units import UNITS
+from identification.logs.unknown_units import unknown_unit
 
 _TIMES = ("time", "t", "timestamp", "stamp", "secs", "sec", "seconds", "ms", "us", "ns")
 _STEPS = ((0.5, "s"), (200.0, "ms"), (2e5, "us"), (np.inf, "ns"))  # largest usual step in a unit
@@ -30,11 +32,15 @@ def unit_of(name: str, farthest: float) -> tuple[str, str]:
 
     `farthest` is the largest number of its family.
     """
+    if unknown_unit(name):
+        return "", ""
     brackets = _BRACKETS.search(name)
     last = re.split(r"[_.\s]", name)[-1]
     for word in ([brackets[1].strip()] if brackets else []) + [last]:
         if word in UNITS and (brackets or len(word) > 1):
             return word, "its name ends in it"
+    if unit := name_and_unit(name)[1]:
+        return unit, "its name ends in it"
     unit = unit_by_words(name)
     if unit == "rad" and farthest > _DEGREES:
         return "deg", "it goes too far for radians"

@@ -21,9 +21,10 @@ from identification.logs.sampling import MIN_ROWS, FloatArray, grid
 from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.stamps.stamps import seconds_of, with_time
 from identification.logs.stamps.standing import columns_of_time, refuse_standing
+from identification.logs.stamps.times import TIME, looks_like_time, times_sentence
 from identification.logs.table import Table, renamed
-from identification.logs.times import TIME, looks_like_time, times_sentence
 from identification.logs.units import to_si
+from identification.logs.unknown_units import by_unknown_unit, unknown_sentence
 from identification.logs.wrapped import find_jumps, jump_sentence, turn_of
 from identification.storage.files import read_bytes
 
@@ -138,7 +139,8 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
     )
     if not columns:
         raise InputError(f"{path} has no numbers beside its time; record the log again")
-    remarks = [*table.remarks]
+    unsaid = by_unknown_unit(c.name for c in columns if not c.unit)
+    remarks = [*table.remarks, *map(unknown_sentence, unsaid, unsaid.values())]
     for column in (c for c in columns if c.role != "input"):
         turn = turn_of(column.unit)
         if turn and (found := find_jumps(full[column.name], turn)):

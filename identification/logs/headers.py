@@ -137,7 +137,8 @@ def with_headers(
     sidecar = replace(sidecar, columns={**others, **columns}, units={**sidecar.units, **units})
     if not told:
         return table, sidecar
-    names = [columns[c] + (f" [{units[columns[c]]}]" if columns[c] in units else "") for c in told]
+    base = {c: split_header(c)[0] if c == columns[c] else columns[c] for c in told}
+    names = [base[c] + (f" [{units[columns[c]]}]" if columns[c] in units else "") for c in told]
     what, are, say = (
         ("Column", "is", "its header says") if len(told) == 1
         else ("Columns", "are", "their headers say")

@@ -29,6 +29,7 @@ from identification.logs.stamps.publishers import (
 from identification.logs.stamps.resampling import even_out
 from identification.logs.stamps.stamps import wanted_columns, with_time, without_repeated
 from identification.logs.stamps.standing import columns_of_time, refuse_standing
+from identification.logs.stamps.times import told_of_times
 from identification.logs.table import (
     Table,
     check_columns,
@@ -38,8 +39,8 @@ from identification.logs.table import (
     converted,
     renamed,
 )
-from identification.logs.times import told_of_times
 from identification.logs.units import check_si
+from identification.logs.unknown_units import told_of_unknown_units
 from identification.logs.wrapped import without_wraps
 from identification.storage.files import readable
 
@@ -126,6 +127,7 @@ def read_log(
         table, found = with_headers(table, {"time", *columns}, sidecar, mapped)
         table = told_of_times(table, found, is_said="time" in sidecar.columns.values())
         sidecar = found
+        table = told_of_unknown_units(table, sidecar, {**units, "time": "s"}, mapped)
     for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",

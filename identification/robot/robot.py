@@ -193,6 +193,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     if tendons.sensors:  # they stand in the place of the joints that they tell
         outputs = (*tendons.sensors, *(n for n in outputs if n not in tendons.joints))
     column = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
+    of_poses = [name for pose in poses for name in pose.columns]
     made = {name for pose in poses for name in pose.names}
     asked = {column[n]: u for n, u in units.items() if n in outputs and n not in made}
     asked |= {name: "m" for pose in poses for name in pose.columns[:3]}
@@ -200,7 +201,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
         log = read_log(
             path, [column[n] for n in inputs], [column[n] for n in outputs],
             [*motors_to_add(spec).values()], poses=poses, units=asked, named_in=file.path,
-            lenient=True, said=file.log, mapped=tuple(file.columns.values()),
+            lenient=True, said=file.log, mapped=(*file.columns.values(), *of_poses),
             trust_rows="rows" in file.trust,
         )  # fmt: skip
     except MissingColumnsError as error:

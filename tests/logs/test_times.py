@@ -5,7 +5,7 @@ import pytest
 
 from identification import inspect_log
 from identification.logs.read import read_log
-from identification.logs.times import looks_like_time
+from identification.logs.stamps.times import looks_like_time
 
 TIME = 0.01 * np.arange(200)
 CLOCKS = {  # the columns that one clock writes

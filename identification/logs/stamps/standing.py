@@ -19,8 +19,8 @@ from identification.errors import InputError
 from identification.logs.sampling import FloatArray, refuse_alike
 from identification.logs.sidecar import Sidecar
 from identification.logs.stamps.stamps import TIME, stamps_apart
+from identification.logs.stamps.times import how_to_take, looks_like_time
 from identification.logs.table import Table
-from identification.logs.times import how_to_take, looks_like_time
 from identification.storage.files import toml_value
 
 FEWEST = 20  # rows in which a clock stood
