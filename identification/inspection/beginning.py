@@ -13,17 +13,17 @@ import numpy as np
 from identification.errors import InputError
 from identification.inspection.answers import Answer
 from identification.inspection.channels import OF_JOINTS, Channel, Match, channels_of
-from identification.inspection.guesses import Role
 from identification.inspection.inspected import SAID, Inspection, answers_of
 from identification.inspection.matching import BY_PLACE, SAME, match
 from identification.inspection.needs import limits_of, needs_of, unanswered
 from identification.inspection.words import answer_sentences
+from identification.logs.column_words import Role, unit_by_words
 from identification.logs.swing import FEWEST, part_of_swing
 from identification.logs.units import to_si
 from identification.model.scaled_servo import is_scaled_servo, scaling
 from identification.model.tied import follows
 from identification.robot.file.checks import is_toml_of
-from identification.robot.file.completed import positions_without_sensor, torques_without_motor
+from identification.robot.file.completed import motors_to_add, positions_without_sensor
 from identification.robot.file.file import RobotFile
 from identification.robot.file.model_file import robot_spec
 from identification.storage.files import exists, toml_key, toml_table, toml_value, whole_file
@@ -114,10 +114,11 @@ def _serves_torques(found: Inspection, model: mujoco.MjModel, matches: Sequence[
 
 def _motors(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection) -> dict[str, str]:
     """Returns the motors that a model without actuators needs for the torques in a log."""
-    forces = {c.name for c in found.columns if c.unit and to_si(c.unit)[0] in ("N m", "N")}
+    units = {c.name: to_si(c.unit)[0] if c.unit else unit_by_words(c.name) for c in found.columns}
+    forces = {name for name, unit in units.items() if unit in ("N m", "N")}
     if model.nu or not forces:
         return {}
-    lacking = [Channel(name, name.rpartition("_")[0], True) for name in torques_without_motor(spec)]
+    lacking = [Channel(name, joint, True) for joint, name in motors_to_add(spec).items()]
     matches = match([*lacking, *channels_of(model)], found)
     return {m.channel.name: m.column for m in matches if m.channel.is_input and m.column in forces}
 

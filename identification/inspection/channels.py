@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import mujoco
 
-from identification.inspection.guesses import words_of
 from identification.model.tied import follows
 
 _RATE = int(mujoco.mjtSensor.mjSENS_JOINTVEL)
@@ -48,12 +47,6 @@ def channels_of(model: mujoco.MjModel) -> tuple[Channel, ...]:
         for k in range(model.nsensor) if int(model.sensor_type[k]) in (_RATE, _POSITION, _LENGTH)
     ]  # fmt: skip
     return (*inputs, *outputs)
-
-
-def name_words(name: str) -> frozenset[str]:
-    """Returns the words of a name in small letters, and its numbers."""
-    digits = "".join(c if c.isdigit() else " " for c in name).split()
-    return frozenset((*words_of(name), *digits))
 
 
 def _measured(model: mujoco.MjModel, sensor: int) -> str:

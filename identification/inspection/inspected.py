@@ -11,22 +11,20 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.inspection.answers import Answer, find_answers
-from identification.inspection.guesses import (
-    Role,
-    family,
-    is_time,
-    role_of,
-    time_unit,
-    unit_of,
-)
+from identification.inspection.guesses import family, is_time, time_unit, unit_of
+from identification.logs.column_words import Role, role_of
 from identification.logs.formats.formats import log_table, refuse_no_log
+from identification.logs.headers import name_and_unit, read_headers
 from identification.logs.names import listed, lookup
 from identification.logs.repeats import repeat_sentence, repeated_share
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
-from identification.logs.sidecar import read_sidecar
+from identification.logs.sidecar import Sidecar, read_sidecar
 from identification.logs.stamps.stamps import seconds_of, with_time
-from identification.logs.table import renamed
+from identification.logs.stamps.standing import columns_of_time, refuse_standing
+from identification.logs.stamps.times import TIME, looks_like_time, times_sentence
+from identification.logs.table import Table, renamed
 from identification.logs.units import to_si
+from identification.logs.unknown_units import by_unknown_unit, unknown_sentence
 from identification.logs.wrapped import find_jumps, jump_sentence, turn_of
 from identification.storage.files import read_bytes
 
@@ -111,22 +109,25 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         path, lambda names: [n for n in names if n not in texts], header=sidecar.header,
         stamps=STAMPS,
     )  # fmt: skip
-    table = with_time(renamed(table, sidecar), sidecar)
+    table = renamed(table, sidecar)
     if len(table.data) < MIN_ROWS:
         raise InputError(f"{path} has fewer than {MIN_ROWS} rows; record the log again")
-    times = (n for n in table.names if is_time(n, table[n]))
-    name = "time" if "time" in table.names else next(times, "")
+    of_time = columns_of_time(table, sidecar)
+    table, name = _with_time_found(table, sidecar)
     if not name and not sidecar.sampling_time:
         raise InputError(
             f"{path} has no column that looks like time; it has {listed(table.names)}; write the"
             f' one that is as COLUMN = "time" under [columns] in {sidecar.path}, or sampling_time'
             " = 0.01 (in seconds) into it"
         )
-    unit = sidecar.units.get("time") or (time_unit(table[name]) if name else "s")
-    declared = grid(0.0, sidecar.sampling_time or 1.0, len(table.data))
-    time: FloatArray = declared
+    unit = sidecar.units.get(TIME) or name_and_unit(name)[1]
+    time: FloatArray = grid(0.0, sidecar.sampling_time or 1.0, len(table.data))
     if name:
+        seconds = table[name] * to_si(unit or "s")[1]
+        refuse_standing(table, seconds, of_time or (name,), sidecar)
+        unit = unit or time_unit(table[name])
         time = (table[name] - table[name][0]) * to_si(unit)[1]
+    unit = unit or "s"
     values = {n: table[n] for n in table.names if n != name}
     full = {n: x for n, x in values.items() if np.isfinite(x).sum() >= MIN_ROWS}
     farthest: dict[str, float] = {}  # columns of a family have one unit
@@ -138,7 +139,8 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
     )
     if not columns:
         raise InputError(f"{path} has no numbers beside its time; record the log again")
-    remarks = [*table.remarks]
+    unsaid = by_unknown_unit(c.name for c in columns if not c.unit)
+    remarks = [*table.remarks, *map(unknown_sentence, unsaid, unsaid.values())]
     for column in (c for c in columns if c.role != "input"):
         turn = turn_of(column.unit)
         if turn and (found := find_jumps(full[column.name], turn)):
@@ -153,6 +155,20 @@ def inspect_log(path: str | os.PathLike[str]) -> Inspection:
         answers=_answers(time, full, columns), left_out=texts,
         remarks=tuple(remarks),
     )  # fmt: skip
+
+
+def _with_time_found(table: Table, sidecar: Sidecar) -> tuple[Table, str]:
+    """Returns a table and its column of time, "" where it has none; it tells of others."""
+    times = [n for n in table.names if is_time(n, table[n])]
+    headers = [n for n, (of, _) in read_headers(table.names, {TIME}, sidecar).items() if of == TIME]
+    by_header = [n for n in headers if n in times]
+    names = table.names
+    table = table if by_header else with_time(table, sidecar)
+    name = TIME if TIME in table.names else next(iter([*by_header, *times, *headers]), "")
+    others = [n for n in names if n != name and looks_like_time(n)]
+    if name in names and others and TIME not in sidecar.columns.values():
+        table = table.told(times_sentence(table.path, name, others, sidecar.path))
+    return table, name
 
 
 def _column(name: str, time: FloatArray, values: FloatArray, said: str, farthest: float) -> Column:

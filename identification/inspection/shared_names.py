@@ -15,9 +15,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from identification.inspection.channels import Channel, Match, name_words
-from identification.inspection.guesses import is_force, is_rate, role_of
+from identification.inspection.channels import Channel, Match
 from identification.inspection.inspected import Inspection
+from identification.logs.column_words import is_force, is_rate, name_words, role_of
 
 ALONE = "guessed: no column beside it is a command"  # how such a column was found
 

@@ -56,7 +56,7 @@ def read_headers(
     ranks: dict[str, int] = {}
     for column in rest:
         if column in sidecar.columns or column in mapped:
-            _, (_, unit) = next(_readings(column))
+            _, unit = name_and_unit(column)
             if unit:
                 found[column] = (sidecar.columns.get(column, column), unit)
             continue
@@ -71,6 +71,17 @@ def read_headers(
                     found[column] = (same[0], unit)
                 break
     return found
+
+
+def split_header(column: str) -> tuple[str, str]:
+    """Returns the name and what stands in brackets behind it, "" where nothing does."""
+    match = _BRACKETS.fullmatch(column)
+    return (column, "") if match is None else (match["name"], match["unit"])
+
+
+def name_and_unit(column: str) -> tuple[str, str]:
+    """Returns the name that a header gives a column, and its known unit, "" where it has none."""
+    return next(_readings(column))[1]
 
 
 def _readings(column: str) -> Iterator[tuple[int, tuple[str, str]]]:
@@ -126,7 +137,8 @@ def with_headers(
     sidecar = replace(sidecar, columns={**others, **columns}, units={**sidecar.units, **units})
     if not told:
         return table, sidecar
-    names = [columns[c] + (f" [{units[columns[c]]}]" if columns[c] in units else "") for c in told]
+    base = {c: split_header(c)[0] if c == columns[c] else columns[c] for c in told}
+    names = [base[c] + (f" [{units[columns[c]]}]" if columns[c] in units else "") for c in told]
     what, are, say = (
         ("Column", "is", "its header says") if len(told) == 1
         else ("Columns", "are", "their headers say")

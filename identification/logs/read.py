@@ -28,6 +28,8 @@ from identification.logs.stamps.publishers import (
 )
 from identification.logs.stamps.resampling import even_out
 from identification.logs.stamps.stamps import wanted_columns, with_time, without_repeated
+from identification.logs.stamps.standing import columns_of_time, refuse_standing
+from identification.logs.stamps.times import told_of_times
 from identification.logs.table import (
     Table,
     check_columns,
@@ -38,6 +40,7 @@ from identification.logs.table import (
     renamed,
 )
 from identification.logs.units import check_si
+from identification.logs.unknown_units import told_of_unknown_units
 from identification.logs.wrapped import without_wraps
 from identification.storage.files import readable
 
@@ -121,7 +124,10 @@ def read_log(
         of_matlab=(inputs, measured, optional),
     )
     if lenient:
-        table, sidecar = with_headers(table, {"time", *columns}, sidecar, mapped)
+        table, found = with_headers(table, {"time", *columns}, sidecar, mapped)
+        table = told_of_times(table, found, is_said="time" in sidecar.columns.values())
+        sidecar = found
+        table = told_of_unknown_units(table, sidecar, {**units, "time": "s"}, mapped)
     for key in ("units", "factors", "zeros"):
         check_keys(
             f"column under {key!r} in {sidecar.file_of(key)}:",
@@ -138,6 +144,7 @@ def read_log(
             f"'zeros' in {sidecar.file_of('zeros')} has one for time, whose first stamp may be any;"
             " leave it out"
         )
+    of_time = columns_of_time(table, sidecar)
     table = with_time(renamed(table, sidecar), sidecar)
     if "time" not in table.names and sidecar.sampling_time:
         time = grid(0.0, sidecar.sampling_time, len(table.data))
@@ -148,6 +155,7 @@ def read_log(
     si, factors = conversions(table, sidecar, {**units, "time": "s"})
     table = with_angles(converted(table, sidecar, factors), poses)
     gaps: tuple[tuple[float, float], ...] = ()
+    refuse_standing(table, table["time"], of_time, sidecar)
     if lenient:
         check_stamps(table)
         check_possible(table)  # a log of a robot; others may hold any number

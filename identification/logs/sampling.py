@@ -93,7 +93,17 @@ def check_time(
         _check_even(time, place, declared)
 
 
+def refuse_alike(time: FloatArray, place: Callable[[int], str], cure: str) -> None:
+    """Refuse time stamps (n,) [s] that are all the same, with what to do about it."""
+    if len(time) >= MIN_ROWS and bool(np.all(time == time[0])):
+        raise InputError(
+            f"{place(0)} and all {len(time) - 1} rows after it have one stamp, {time[0]:.9g} s:"
+            f" time does not advance; {cure}"
+        )
+
+
 def _check_increasing(time: FloatArray, place: Callable[[int], str]) -> None:
+    refuse_alike(time, place, "give each row the time at which it was sampled")
     stuck = np.flatnonzero(time[1:] <= time[:-1])
     if stuck.size:
         row = int(stuck[0]) + 1

@@ -39,6 +39,7 @@ from identification.robot.file.start import (
     start_sentence,
     unused_sentence,
 )
+from identification.robot.file.unread_inputs import inputs_told
 from identification.robot.free_swing import carried_sentence, inertias_sentence, without_untold
 from identification.robot.robot import Robot, read_robot_log, robot_of
 from identification.robot.step_error import refuse_coarse_steps
@@ -154,7 +155,8 @@ def doubtful(robot: Robot) -> list[str]:
     """Returns sentences of the remarks on which a result depends, to stand beside it.
 
     They say that a free run of the robot's log begins elsewhere than the log does, in short, that
-    outputs stand still or repeat samples, that the model clips inputs, and that its geoms touch.
+    outputs stand still or repeat samples, that nothing reads columns which look like inputs, that
+    the model clips inputs, and that its geoms touch.
     """
     text = None
     if robot.file.horizon is None:
@@ -162,8 +164,10 @@ def doubtful(robot: Robot) -> list[str]:
     fitted = (robot.log, *robot.others)
     still = (still_sentence(log) for log in fitted)
     clipped = (clipped_sentence(robot.plant.model, log) for log in fitted)
-    repeats = (told for log in fitted for told in repeats_told(log.remarks))
-    return [*filter(None, (text, *still, *repeats, *clipped, robot.touches))]
+    told = (
+        told for log in fitted for of in (inputs_told, repeats_told) for told in of(log.remarks)
+    )
+    return [*filter(None, (text, *still, *told, *clipped, robot.touches))]
 
 
 def _remarks(robot: Robot, logs: Sequence[Log]) -> tuple[str, ...]:

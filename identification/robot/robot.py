@@ -29,6 +29,7 @@ from identification.refusals.unmeasured import refuse_unmeasured
 from identification.robot.file.carried import with_carried
 from identification.robot.file.checks import (
     outputs_of,
+    refuse_columns,
     refuse_every,
     refuse_milliseconds,
     refuse_same_stem,
@@ -36,7 +37,7 @@ from identification.robot.file.checks import (
     refuse_unknown_outputs,
     refuse_unnamed,
 )
-from identification.robot.file.completed import refuse_unread_torques, torques_without_motor
+from identification.robot.file.completed import motors_to_add
 from identification.robot.file.file import RobotFile
 from identification.robot.file.measured_tendons import joint_positions, measured_tendons
 from identification.robot.file.model_file import measured_poses, robot_spec, unit_of, with_step
@@ -48,7 +49,7 @@ from identification.robot.file.own_values import (
 )
 from identification.robot.file.parameters import free_parameter, measured_start
 from identification.robot.file.start import refuse_start, start_of
-from identification.storage.files import toml_key
+from identification.robot.file.unread_inputs import told_of_inputs
 
 
 @dataclass(frozen=True)
@@ -172,18 +173,10 @@ def _said_of_turning(known: Sequence[Axis], only: Sequence[str]) -> tuple[str, .
     )
 
 
-def _shared(columns: Mapping[str, str], name: str) -> list[str]:
-    """Returns that the column of an actuator or sensor is that of others too, or nothing."""
-    column = columns[name]
-    users = [n for n, other in columns.items() if other == column]
-    return [f"column {column!r} is that of {' and '.join(users)}"] if len(users) > 1 else []
-
-
 def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     """Read a log with the columns of a robot."""
     refuse_same_stem(file, Path(path))
     spec = robot_spec(file)[0]
-    unread = torques_without_motor(spec)
     model, poses = spec.compile(), measured_poses(file)
     refuse_unnamed(model, file)
     inputs = tuple(model.actuator(i).name for i in range(model.nu))
@@ -196,32 +189,19 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     units = {
         n: unit_of(model, f"{field}[{i}]") for n, (field, i) in zip(outputs, places, strict=True)
     }
-    for name in file.columns:
-        if name == "time":
-            raise InputError(
-                f"[columns] in {file.path} names columns of actuators and sensors; the column of"
-                f" time is named in the log's TOML, the other way round: write"
-                f' {toml_key(file.columns[name])} = "time" under [columns] in'
-                f" {Path(path).with_suffix('.toml')}, or under [log.columns] in {file.path}"
-            )
-        if name not in (*inputs, *outputs, *tendons.sensors):
-            unknown = unknown_name(f"actuator or sensor under columns in {file.path}:", name,
-                                   (*inputs, *outputs, *tendons.sensors))  # fmt: skip
-            raise InputError("; ".join([str(unknown), *_shared(file.columns, name)]))
-    for name in file.columns:
-        if shared := _shared(file.columns, name):
-            raise InputError(f"in {file.path}, {shared[0]}; give each a column of its own")
+    refuse_columns(file, (*inputs, *outputs, *tendons.sensors), Path(path))
     if tendons.sensors:  # they stand in the place of the joints that they tell
         outputs = (*tendons.sensors, *(n for n in outputs if n not in tendons.joints))
     column = {name: file.columns.get(name, name) for name in (*inputs, *outputs)}
+    of_poses = [name for pose in poses for name in pose.columns]
     made = {name for pose in poses for name in pose.names}
     asked = {column[n]: u for n, u in units.items() if n in outputs and n not in made}
     asked |= {name: "m" for pose in poses for name in pose.columns[:3]}
     try:
         log = read_log(
-            path, [column[n] for n in inputs], [column[n] for n in outputs], unread,
-            poses=poses, units=asked, named_in=file.path,
-            lenient=True, said=file.log, mapped=tuple(file.columns.values()),
+            path, [column[n] for n in inputs], [column[n] for n in outputs],
+            [*motors_to_add(spec).values()], poses=poses, units=asked, named_in=file.path,
+            lenient=True, said=file.log, mapped=(*file.columns.values(), *of_poses),
             trust_rows="rows" in file.trust,
         )  # fmt: skip
     except MissingColumnsError as error:
@@ -240,7 +220,7 @@ def read_robot_log(file: RobotFile, path: str | Path) -> Log:
     factors, zeros = (
         {n: of[c] for n, c in column.items() if c in of} for of in (log.factors, log.zeros)
     )
-    refuse_unread_torques(file, log)
+    log = told_of_inputs(file, spec, log, Path(path))
     log = replace(log, input_names=inputs, output_names=outputs, units=given, factors=factors,
                   zeros=zeros, extras={})  # fmt: skip
     if tendons.sensors:

@@ -13,9 +13,10 @@ from touching_cases import simulated
 from identification import InputError, fit, inspect_log, read_robot
 from identification.inspection.answers import find_answers
 from identification.inspection.beginning import write_beginning
-from identification.inspection.guesses import is_time, role_of, time_unit, unit_of
+from identification.inspection.guesses import is_time, time_unit, unit_of
 from identification.inspection.matching import Channel, match
 from identification.inspection.words import answer_sentence, answer_sentences
+from identification.logs.column_words import role_of
 from identification.storage.files import toml_value
 
 STEP = 0.01

@@ -51,7 +51,8 @@ def _with(**changes):
     [
         (_with(inputs=np.zeros((40, 3))), ["inputs", "(40, 3)", "(40, 2)"]),
         (_with(outputs=np.full((40, 2), np.nan)), ["outputs[0, 0]", "nan", "finite"]),
-        (_with(time=np.zeros(40)), ["row 1", "does not increase"]),
+        (_with(time=np.zeros(40)), ["row 0", "39 rows after", "does not advance"]),
+        (_with(time=-0.01 * np.arange(40)), ["row 1", "does not increase"]),
         (_with(time=np.arange(40.0) ** 2), ["not even", "resample"]),
         (_with(output_names=("angle_1", "angle_1")), ["angle_1", "twice"]),
         (_with(units={"angel_1": "rad"}), ["angel_1", "did you mean 'angle_1'"]),

@@ -175,3 +175,18 @@ def test_the_robot_that_is_written_measures_the_base_too(tmp_path):
     assert read_robot_log(read_robot_file(again), tmp_path / "log.csv").output_names == (
         robot.log.output_names
     )
+
+
+@pytest.mark.parametrize(("unit", "size"), [("mm", 1e3), ("furlong", 1.0)])
+def test_the_columns_of_a_pose_have_the_unit_of_their_headers(tmp_path, unit, size):
+    path = record(tmp_path)
+    plain = read_robot_log(read_robot_file(file(tmp_path)), path)
+    head, rows = path.read_text().split("\n", 1)
+    names = [f"{n} [{unit}]" if n in COLUMNS[:3] else n for n in head.split(",")]
+    table = np.loadtxt(rows.splitlines(), delimiter=",")
+    table[:, [n in COLUMNS[:3] for n in head.split(",")]] *= size
+    np.savetxt(path, table, "%.12g", ",", header=",".join(names), comments="")
+    listed = ", ".join(f'"{n} [{unit}]"' if n in COLUMNS[:3] else f'"{n}"' for n in COLUMNS)
+    log = read_robot_log(read_robot_file(file(tmp_path, f"base = [{listed}]")), path)
+    np.testing.assert_allclose(log.outputs, plain.outputs, atol=1e-6)
+    assert ("is no known unit" in " ".join(log.remarks)) == (unit == "furlong")

@@ -30,6 +30,7 @@ from identification.logs.sampling import (
 from identification.logs.sidecar import Sidecar
 from identification.logs.stamps.fitting_steps import EXACT, Stamps, fits, judged, missing_rows
 from identification.logs.stamps.stamps import WHOLE, moves_on, shared
+from identification.logs.stamps.standing import refuse_stopped
 from identification.logs.table import Table
 
 MEANT_EXACT = 1e-2  # the same where the user says that rows with one stamp are meant
@@ -182,6 +183,7 @@ def _refuse_irregular(
     # came together may be lost where the user says what the step is.
     if stamps.steps is None and n_lost <= (MOST * len(time) if declared else FEW):
         return
+    refuse_stopped(table, sidecar)
     if declared:
         _refuse_missing(table, stamps, sidecar, declared)
     row = int(np.flatnonzero(lost if n_lost else odd)[0])

@@ -129,8 +129,10 @@ def wanted_columns(asked: set[str], sidecar: Sidecar) -> Callable[[Sequence[str]
     to = sidecar.columns
 
     def wanted(names: Sequence[str]) -> set[str]:
-        pair = stamps_apart([to.get(n, n) for n in names], sidecar) or ()
         by_header = read_headers(names, asked, sidecar)
+        told = [to.get(n, n) for n in names if n not in sidecar.ignore]
+        has_time = any(name == TIME for name, _ in by_header.values())
+        pair = () if has_time else stamps_apart(told, sidecar) or ()
         return {n for n in names if to.get(n, n) in {*asked, *pair} or n in by_header}
 
     return wanted

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -109,6 +109,38 @@ def refuse_unknown_outputs(model: mujoco.MjModel, file: RobotFile, outputs: Sequ
                 f'{unknown}; write one of these, or add <jointpos name="{name}" joint="JOINT"/> to'
                 f" the <sensor> of {file.model}, with one of its joints: {listed(joints)}"
             )
+
+
+def refuse_columns(file: RobotFile, names: Sequence[str], log: Path) -> None:
+    """Refuse names under [columns] that are none of the model's, and columns that are given twice.
+
+    Args:
+        file: of the robot.
+        names: of the actuators and sensors that have columns.
+        log: path of the log.
+    """
+    for name in file.columns:
+        if name == "time":
+            raise InputError(
+                f"[columns] in {file.path} names columns of actuators and sensors; the column of"
+                f" time is named in the log's TOML, the other way round: write"
+                f' {toml_key(file.columns[name])} = "time" under [columns] in'
+                f" {log.with_suffix('.toml')}, or under [log.columns] in {file.path}"
+            )
+        if name not in names:
+            where = f"actuator or sensor under columns in {file.path}:"
+            unknown = unknown_name(where, name, names)
+            raise InputError("; ".join([str(unknown), *_shared(file.columns, name)]))
+    for name in file.columns:
+        if shared := _shared(file.columns, name):
+            raise InputError(f"in {file.path}, {shared[0]}; give each a column of its own")
+
+
+def _shared(columns: Mapping[str, str], name: str) -> list[str]:
+    """Returns that the column of an actuator or sensor is that of others too, or nothing."""
+    column = columns[name]
+    users = [n for n, other in columns.items() if other == column]
+    return [f"column {column!r} is that of {' and '.join(users)}"] if len(users) > 1 else []
 
 
 def refuse_short(log: Log, path: Path) -> None:

@@ -16,11 +16,8 @@ from itertools import chain, count
 
 import mujoco
 
-from identification.errors import InputError
-from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.robot.file.file import RobotFile
-from identification.storage.files import toml_key, toml_value
 
 _SLIDE = mujoco.mjtJoint.mjJNT_SLIDE
 _KINDS = {  # sensors that may be outputs of a log, and what they are called beside an actuator
@@ -29,7 +26,7 @@ _KINDS = {  # sensors that may be outputs of a log, and what they are called bes
     mujoco.mjtSensor.mjSENS_TENDONPOS: "length",
 }
 _MOVING = (_SLIDE, mujoco.mjtJoint.mjJNT_HINGE)
-_JOINT = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+JOINT = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 
 
 def with_missing(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...]:
@@ -49,7 +46,7 @@ def with_missing(spec: mujoco.MjSpec, file: RobotFile) -> tuple[str, ...]:
             sensors.append(name)
         motor = motor_of(joint, kind == _SLIDE)
         if motor in asked and motor not in known and joint in _undriven(spec, [joint]):
-            added = spec.add_actuator(name=motor, target=joint, trntype=_JOINT[0])
+            added = spec.add_actuator(name=motor, target=joint, trntype=JOINT[0])
             added.set_to_motor()
             motors.append(motor)
     said = []
@@ -101,25 +98,15 @@ def motor_of(joint: str, slides: bool) -> str:
     return f"{joint}_{'force' if slides else 'torque'}"
 
 
-def torques_without_motor(spec: mujoco.MjSpec) -> tuple[str, ...]:
-    """Returns the names of columns that are the torques of joints without a drive."""
+def motors_to_add(spec: mujoco.MjSpec) -> dict[str, str]:
+    """Returns the motors that joints without a drive may get, by joint.
+
+    A motor is called as its input: a column of that name is the torque of its joint.
+    """
     known = {thing.name for thing in (*spec.actuators, *spec.sensors)}
     joints = {j.name: j.type == _SLIDE for j in spec.joints if j.type in _MOVING and j.name}
-    names = (motor_of(joint, joints[joint]) for joint in _undriven(spec, joints))
-    return tuple(name for name in names if name not in known)
-
-
-def refuse_unread_torques(file: RobotFile, log: Log) -> None:
-    """Refuse a log whose extras are torques that would move the robot, and that nothing reads."""
-    moving = [name for name, column in log.extras.items() if column.any()]
-    if moving:
-        lines = ", ".join(f"{toml_key(n)} = {toml_value(n)}" for n in moving)
-        raise InputError(
-            f"log {log.name!r} has {listed(moving)}, and {file.model.name} has no actuator that"
-            f" takes {'it' if len(moving) == 1 else 'them'}; write {lines} under [columns] in"
-            f" {file.path}, which gives each such joint a motor, or name them under ignore in the"
-            " TOML beside the log if they do not drive it"
-        )
+    motors = {joint: motor_of(joint, joints[joint]) for joint in _undriven(spec, joints)}
+    return {joint: motor for joint, motor in motors.items() if motor not in known}
 
 
 def add_position(spec: mujoco.MjSpec, joint: str, name: str) -> None:
@@ -132,5 +119,5 @@ def add_position(spec: mujoco.MjSpec, joint: str, name: str) -> None:
 
 def _undriven(spec: mujoco.MjSpec, joints: Iterable[str]) -> list[str]:
     """Returns those joints on which no actuator acts directly."""
-    driven = {a.target for a in spec.actuators if a.trntype in _JOINT}
+    driven = {a.target for a in spec.actuators if a.trntype in JOINT}
     return [joint for joint in joints if joint not in driven]
