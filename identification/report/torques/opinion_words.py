@@ -18,6 +18,7 @@ from identification.shares import decimal, fall_words, percent
 SURE = 3.0  # std of both together, from which two sizes are not the same
 TORQUES = "The torques of the measured motion, computed without a simulation,"
 SAME = {"armature": "a", "m": "M"}  # sizes that a search calls otherwise
+FRICTION = "friction, which they always fit, does not count as one"
 OTHERWISE = "otherwise"  # doubt of what is proven by itself, and is in no fit
 AGAINST = {  # why torques do not prove an effect
     "sign": "its size would have a sign that physics does not allow",
@@ -51,7 +52,8 @@ def opinion_sentences(found: Discovery) -> list[str]:
     elif own:
         clauses.append(_own(own, found))
     elif not any(o.standing == "named" for o in judged):
-        clauses.append(f"name no effect{'' if found.named else ' either'}.")
+        which = " of their own" if judged else "" if found.named else " either"
+        clauses.append(f"name no effect{which}; {FRICTION}.")
     said = [f"{'They' if k else TORQUES} {clause}" for k, clause in enumerate(clauses)]
     return [*said, *_conclusion(own, judged, found)]
 
