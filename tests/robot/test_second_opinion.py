@@ -146,6 +146,12 @@ def test_torques_that_tell_a_friction_do_not_say_that_they_name_nothing():
     )
 
 
+def test_what_torques_tell_as_good_within_chance_has_its_own_size():
+    scores = [score("cogging"), score("stiffness")]
+    said = opinion_sentences(told([], scores, own=scores[:1], rivals=scores[1:]))[0]
+    assert said.endswith("; within chance as good: stiffness, joint elbow, k = 0.200 ± 0.010 N m.")
+
+
 def test_the_same_law_at_another_place_is_another_name():
     found = told([("mass_mismatch", "body forearm")], own=[score("mass_mismatch", where="body a")])
     said = " ".join(opinion_sentences(found))

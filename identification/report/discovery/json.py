@@ -168,10 +168,12 @@ def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
                     for n, v in r.values.items()
                     if n in (*r.candidate.sizes, *r.candidate.fixed)
                 },
+                "parameters": _parameters_to_json(r.parameters),
             }
             for r in named.rivals
         ],
         "same_as": named.same_as.name if named.same_as else None,
+        "same_as_parameters": _parameters_to_json(named.twin.parameters) if named.twin else None,
         "advice": named.advice or None,
         **_proofs_to_json(named.proof),
         **plain_fields(named.proof.told, "agrees", "disagrees"),

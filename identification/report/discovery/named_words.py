@@ -136,25 +136,38 @@ def _named(found: Discovery, named: NamedEffect) -> str:
         first += " (in no catalogue, drawn from the data)"
     mine = describe_there(named.candidate, plant)
     if named.same_as is not None:  # another name of the same force
+        sized = f", {describe_sizes(named.twin)}" if named.twin else ""
         mine += (
-            f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and'
-            " no record tells the two apart)"
+            f' (or "{phrase(named.same_as)}"{sized}: below the Coulomb friction it is the same'
+            " force, and no record tells the two apart)"
         )
-    is_set = named.one_of and bool(named.rivals)
+    if named.one_of and named.rivals:
+        each = [with_sizes(f"{mine} ({percent(own)})", named, plant)]
+        each += [rival_words(r, plant) for r in likely_rivals(named)]
+        return (
+            f"{first} is one of these, and the data do not tell which: {'; '.join(each)}. It is one"
+            f" of them with a confidence of {percent(confidence_of_set(found, named))}. The model"
+            f" got the first one{'' if is_likeliest(named) else ', which is not the likeliest'}."
+            + (f" {named.advice}" if named.advice else "")
+        )
     others = [
         f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})"
         for r in likely_rivals(named)
     ]  # fmt: skip
-    if is_set:
-        return (
-            f"{first} is one of these, and the data do not tell which:"
-            f" {'; '.join([f'{mine} ({percent(own)})', *others])}. It is one of them with a"
-            f" confidence of {percent(confidence_of_set(found, named))}. The model got the first"
-            f" one{'' if is_likeliest(named) else ', which is not the likeliest'}, with"
-            f" {describe_sizes(named, plant)}." + (f" {named.advice}" if named.advice else "")
-        )
     less = f" Less likely: {'; '.join(others)}." if others else ""
     return f"{first}: {mine}, {describe_sizes(named, plant)}; confidence {percent(own)}.{less}"
+
+
+def rival_words(rival: Rival, plant: Plant) -> str:
+    """Returns a member of a set with its odds and the sizes that its own fit gave it."""
+    return with_sizes(
+        f"{describe_there(rival.candidate, plant)} ({percent(rival.confidence)})", rival, plant
+    )
+
+
+def with_sizes(said: str, effect: NamedEffect | Rival, plant: Plant) -> str:
+    """Returns words on an effect with its sizes behind them, where these are known."""
+    return ", ".join(filter(None, [said, describe_sizes(effect, plant)]))
 
 
 def likely_rivals(named: NamedEffect) -> list[Rival]:

@@ -101,11 +101,11 @@ def _of_name(o: TorqueOpinion, named: NamedEffect) -> str:
 def _own(own: Sequence[TorqueOpinion], found: Discovery) -> str:
     """Returns a clause on what torques name and the search does not."""
     first, *rest = own
-    which = f"{_called(first)}{f', {_sizes(first)}' if first.sizes else ''}"
+    which = _with_sizes(first)
     if first.standing == "forbidden":
         return f"would name {which}, but {against(first.doubt, first.chance)}; {_by(first)}."
-    alike = listed([_called(o) for o in rest if o.standing == "alike"])
-    others = "".join(f"; then {_called(o)}" for o in rest if o.standing != "alike")
+    alike = "; or ".join(_with_sizes(o) for o in rest if o.standing == "alike")
+    others = "".join(f"; then {_with_sizes(o)}" for o in rest if o.standing != "alike")
     others = f"{alike and '; within chance as good: '}{alike}{others}"
     how = "first" if first.is_first else "too"
     return f"name {_kind(first, found)} {how}: {which}; {_by(first)}{others}."
@@ -144,6 +144,10 @@ def _called(o: TorqueOpinion) -> str:
 
 def _sizes(o: TorqueOpinion) -> str:
     return ", ".join(f"{n} = {value_with_std(v, s, u)}" for n, (v, s, u) in o.sizes.items())
+
+
+def _with_sizes(o: TorqueOpinion) -> str:
+    return ", ".join(filter(None, [_called(o), _sizes(o)]))
 
 
 def _by(o: TorqueOpinion) -> str:

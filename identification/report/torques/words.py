@@ -89,7 +89,8 @@ def _missing(evidence: Evidence) -> list[str]:
                 f" are held at what was known, they do not (t {score.held_t:.1f})."
             )
         if k == 0 and (rivals := evidence.rivals[:SHOWN]):
-            out[-1] += f" Within chance as good: {listed([called(r) for r in rivals])}."
+            alike = "; ".join(f"{called(r)}, {size_words(r)}" for r in rivals)
+            out[-1] += f" Within chance as good: {alike}."
     return [*out, *_tried(evidence)]
 
 
