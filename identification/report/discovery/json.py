@@ -25,6 +25,7 @@ from identification.report.discovery.missing_place import find_place
 from identification.report.discovery.named_words import curve_nodes
 from identification.report.discovery.verdict import discovery_verdict
 from identification.report.words.parts import parts_to_json
+from identification.report.words.rest import resting
 from identification.windows.coarse import steps_of
 
 GAP = ("rms", "fit_percent", "rms_by_unit")
@@ -78,6 +79,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         "torques_refused": found.torques_refused,
         "parts": parts_to_json(found),
         **plain_fields(found, "shifts", "repeats", "horizon"),
+        "resting": resting(found),
         "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),
         "input_error": plain(found.input_error),
         "located": [describe_finding(finding) for finding in findings],

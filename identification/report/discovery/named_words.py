@@ -22,7 +22,7 @@ from identification.report.words.effects import (
     describe_there,
     largest_known,
 )
-from identification.report.words.errors import listed
+from identification.report.words.proof import agreement_sentences
 from identification.report.words.values import phrase, words_of
 from identification.shares import fall_words, percent
 
@@ -124,7 +124,7 @@ def named_sentences(found: Discovery, named: NamedEffect) -> str:
         outside = f" Or it is {describe_outside(named.outside)}."
     return (
         f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}{outside}"
-        f"{_agreement(found, named)}"
+        f"{agreement_sentences(found, named)}"
     )
 
 
@@ -257,29 +257,3 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
         f" Or no effect is missing ({percent(other.confidence)}): the model explains the same if"
         f" {what} is {far} what was given as known. Measure it, or record another motion."
     )
-
-
-def _agreement(found: Discovery, named: NamedEffect) -> str:
-    """Returns sentences on the unseen records that it helps, without those that repeat others."""
-    names = [e.name for e in found.errors if e.role == "confirm"]
-    names = names or [e.name for e in found.errors if len(found.errors) > 1]
-    distinct = [name for name in names if name not in found.repeats]
-    helped = [name for name in distinct if name in named.proof.told.agrees]
-    said = ""
-    if distinct:
-        what = "curve" if named.candidate.effect.is_curve else "named effect"
-        which = f" ({listed(helped)})" if 0 < len(helped) < len(distinct) else ""
-        said = f" The {what} lowers the error on {len(helped)} of {len(distinct)} unseen records"
-        if len(distinct) == 1:
-            does = "lowers" if helped else "does not lower"
-            said = f" The {what} {does} the error on the unseen record"
-        said += f"{which}."
-    elif names:
-        said = " All unseen records repeat what was fitted, so that they hardly confirm it."
-    if found.repeats and distinct:
-        one = len(found.repeats) == 1
-        said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
-        said += " and does not count." if one else " and do not count."
-    if worse := named.proof.told.disagrees:
-        said += f" It raises the error on {', '.join(worse)} beyond chance."
-    return said

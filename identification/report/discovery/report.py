@@ -50,6 +50,7 @@ from identification.report.words.effects import (
     shown_parameters,
 )
 from identification.report.words.parts import unseen_of
+from identification.report.words.rest import are_all_resting
 from identification.report.words.values import without_colon
 from identification.shares import percent
 
@@ -155,6 +156,8 @@ def discovery_headline(found: Discovery) -> Headline:
                  "in 9 logs of 10, at a plausible size")  # fmt: skip
     known = Tile("known effects tried", str(tried))
     name, place = "Nothing is missing", "as far as these data can tell"
+    if are_all_resting(found):
+        place = "as far as data can tell in which the robot hardly moves"
     if is_above_noise(found):
         name, place = "No effect is named", "No candidate lowers the error beyond chance."
     return Headline("", (Answer(name, place, _three([left, shown if told else None, known])),))

@@ -36,6 +36,7 @@ from identification.report.words.effects import (
 from identification.report.words.errors import change_words, describe_scale, error_words, listed
 from identification.report.words.parts import unseen_of
 from identification.report.words.proof import is_at_noise, proof_sentences
+from identification.report.words.rest import rest_sentences, resting
 from identification.runtime.progress import duration
 from identification.shares import (
     HELD,
@@ -62,7 +63,8 @@ SOUGHT = {  # what the moves that the time limit ends seek, by their names
 def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
-    told = [*_noisier(found), *difference_sentences(found), *bounds]
+    still = rest_sentences(resting(found), found.run is not None)
+    told = [*still, *_noisier(found), *difference_sentences(found), *bounds]
     return [*_verdict(found), *_cut_short(found), *opinion_sentences(found), *told]
 
 

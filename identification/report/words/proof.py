@@ -1,4 +1,4 @@
-"""What named effects do on unseen data, in sentences: beside the noise, chance and smooth forces.
+"""What named effects do on unseen data, in sentences: beside the noise, and on which records.
 
 An effect may be proven where the whole error is as small as the noise: a small part of it may
 follow a law beyond chance, and the noise is estimated rather too high than too low. What the error
@@ -7,11 +7,12 @@ is beside the noise is then told as a number, and with what the effect takes awa
 
 from __future__ import annotations
 
-from identification.discovery.effect_results import Gap
+from identification.discovery.effect_results import Gap, NamedEffect
 from identification.discovery.result import Discovery
 from identification.report.words.effects import describe_effect
 from identification.report.words.errors import change_words, listed
 from identification.report.words.parts import is_untouched
+from identification.report.words.rest import resting
 from identification.shares import HELD, change, fall_words, percent, times_estimated
 
 NOT_FITTED = "the fit has not seen, but on which the search has decided"
@@ -85,3 +86,40 @@ def _smooth(found: Discovery) -> str:
         f" {who}, show how much can be explained at most: {alone}"
         f" {percent(found.smooth_share)} of that.{each}"
     )
+
+
+def agreement_sentences(found: Discovery, named: NamedEffect) -> str:
+    """Returns sentences on the unseen records that a named effect helps.
+
+    Those that repeat others, and those in which the robot hardly moves, do not count.
+    """
+    names = [e.name for e in found.errors if e.role == "confirm"]
+    names = names or [e.name for e in found.errors if len(found.errors) > 1]
+    still = [name for name in resting(found) if name in names]
+    distinct = [name for name in names if name not in (*found.repeats, *still)]
+    helped = [name for name in distinct if name in named.proof.told.agrees]
+    said = ""
+    if distinct:
+        what = "curve" if named.candidate.effect.is_curve else "named effect"
+        which = f" ({listed(helped)})" if 0 < len(helped) < len(distinct) else ""
+        said = f" The {what} lowers the error on {len(helped)} of {len(distinct)} unseen records"
+        if len(distinct) == 1:
+            does = "lowers" if helped else "does not lower"
+            said = f" The {what} {does} the error on the unseen record"
+        said += f"{which}."
+    elif names and still == names:
+        said = " In all unseen records the robot hardly moves, so that they hardly confirm it."
+    elif names:
+        rest = ", or the robot hardly moves in them" if still else ""
+        said = f" All unseen records repeat what was fitted{rest}, so that they hardly confirm it."
+    if found.repeats and distinct:
+        one = len(found.repeats) == 1
+        said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
+        said += " and does not count." if one else " and do not count."
+    if still and distinct:
+        one = len(still) == 1
+        said += f" {', '.join(still)}, in which the robot hardly moves,"
+        said += " does not count." if one else " do not count."
+    if worse := named.proof.told.disagrees:
+        said += f" It raises the error on {', '.join(worse)} beyond chance."
+    return said
