@@ -27,7 +27,7 @@ from rows import search_commit
 from torque_arms import AXES, LISTED, SPREAD, UNLISTED, UNTOLD, arm, hidden, record
 
 from identification import fit_torques, read_robot
-from identification.report.torques.words import size_words
+from identification.report.torques.tables import size_words
 from identification.torques.equations.bodies import read_numbers
 
 ROWS = Path(__file__).resolve().parent / "results" / "torques.jsonl"

@@ -60,6 +60,14 @@ def times_noise(ratio: float, noise: str = "the noise") -> str:
     return f"as small as {noise}" if 0.95 <= ratio < 1.05 else f"{times(ratio)} {noise}"
 
 
+def times_estimated(ratio: float) -> str:
+    """Returns the ratio of an error to the noise as a number: "1.02 times the estimated noise".
+
+    It says nothing of whether the error is noise, of which something may be named.
+    """
+    return f"{decimal(ratio, 3)} times the estimated noise"
+
+
 def change(rise: float) -> str:
     """Returns a relative change in words: "-12 %", "less by 99.6 %", "3 times as large"."""
     if not isfinite(rise):

@@ -144,6 +144,8 @@ class Rival(OfCandidate):
     # of parameters of the fit with it in the named effect's place, by name, in their units; those
     # of the effect are among them
     values: Mapping[str, float] = field(default_factory=dict)
+    # its sizes and shapes in this fit by name: value, std, unit; empty where they are not known
+    parameters: Mapping[str, tuple[float, float, str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -238,6 +240,8 @@ class NamedEffect(OfCandidate):
     # the effect that is the same force by another name, so that no record tells which it is
     # (`identification.prediction.judging.trial`); None where there is none
     same_as: Effect | None = None
+    # this effect as it was fitted, with the same probability; None where it was not
+    twin: Rival | None = None
     # of what it and smooth forces of its joint could explain, the share that it explains
     # (`identification.discovery.forces.smooth_force`); None where that is not known
     smooth_share: float | None = None

@@ -27,7 +27,7 @@ from identification.discovery.result import Discovery
 from identification.effects.effect import Candidate, Effect
 from identification.runtime.pool import OutOfTime, one_blas_thread, until
 from identification.runtime.progress import Progress, following, stage
-from identification.shares import times_noise
+from identification.shares import times_estimated
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -204,7 +204,7 @@ class Evidence(Generic[State]):
         if self.times_noise is None:
             return ""
         ratio = self.times_noise(state)
-        far = f"the error on the unseen data that decide is {times_noise(ratio)}"
+        far = f"the error on the unseen data that decide is {times_estimated(ratio)}"
         names = [f"{a.candidate.effect.name}, {a.candidate.where}" for a in state.accepted]
         return "; ".join([*([far] if isfinite(ratio) else []),
                           *([f"in the model: {', '.join(names)}"] if names else [])])  # fmt: skip

@@ -14,7 +14,14 @@ from identification.errors import DivergenceError
 from identification.estimation.estimation import Estimate
 from identification.estimation.identifiability import Identifiability, identifiability
 from identification.estimation.information import Information, information_of
-from identification.estimation.metrics import by_unit, fit_percent, loss, rms, rms_by_unit
+from identification.estimation.metrics import (
+    by_unit,
+    fit_percent,
+    loss,
+    output_units,
+    rms,
+    rms_by_unit,
+)
 from identification.estimation.residuals import ResidualTests, residual_tests
 from identification.estimation.resolution import nothing_resolved, resolve
 from identification.estimation.scaling_symmetry import Combination
@@ -28,6 +35,7 @@ from identification.estimation.uncertainty import (
 )
 from identification.logs.log import Log
 from identification.logs.noise import noise_floor
+from identification.logs.rest import RESTING, share_of_motion
 from identification.model.predictor import Predictor
 from identification.model.sensitivity import sensitivity
 from identification.runtime.progress import stage
@@ -55,6 +63,7 @@ class Fit:
             fitted residual and from the uncertainty of the parameters, or None.
         validation_rms_by_unit: the same by the outputs' units, each in it, or None.
         validation_expected_by_unit: likewise, or None.
+        validation_rests: whether the outputs hardly move on these data.
         floor: std of the noise seen in the measurement alone, shape (ny,), in the outputs' units.
         tests: tests of the residual.
         information: Fisher information of the log at the estimate, for white noise.
@@ -77,6 +86,7 @@ class Fit:
     validation_expected: float | None
     validation_rms_by_unit: dict[str, float] | None
     validation_expected_by_unit: dict[str, float] | None
+    validation_rests: bool
     floor: np.ndarray
     tests: ResidualTests
     information: Information
@@ -218,12 +228,21 @@ def _assessed(estimate: Estimate, validation: Log | None, asked: int | None) -> 
         validation_expected=None if unseen is None else _over_all(expected),
         validation_rms_by_unit=None if unseen is None else by_unit(unseen, log),
         validation_expected_by_unit=None if unseen is None else by_unit(expected, log),
+        validation_rests=unseen is not None and _rests(log, validation),
         floor=noise_floor(log.outputs),
         tests=residual_tests(residual, log.inputs),
         information=information,
         step_shift=shift[:asked],
         step_error=step_error,
     )
+
+
+def _rests(log: Log, whole: Log | None) -> bool:
+    """Returns whether the outputs hardly move after the samples that were fitted."""
+    if whole is None:
+        return False
+    units, behind = [*output_units(log).values()], whole.outputs[len(log) :]
+    return share_of_motion([log.outputs], behind, units) < RESTING
 
 
 def beyond(

@@ -89,7 +89,7 @@ def _name(
         parameters=collect_parameters(task, final, mine),
         confidence=float(own * min(1.0, max(0.0, explained))),
         rivals=tuple(
-            Rival(m.candidates[-1], float(p), cosine, m.refit.point.values)
+            _rival(task, m, float(p), cosine)
             for m, p, cosine in zip(others, of_rivals, cosines, strict=True)
         ),
         compared=len(others),
@@ -99,6 +99,13 @@ def _name(
         retuned=replace(retuned, confidence=float(probability[-1])),
         outside=_outside(curves[int(np.argmax(drawn))], probability[-2]) if curves else None,
     )
+
+
+def _rival(task: DiscoveryTask, model: FittedModel, probability: float, alike: float) -> Rival:
+    """Returns another effect with the values of its own fit."""
+    c = model.candidates[-1]
+    values, parameters = model.refit.point.values, collect_parameters(task, model, c)
+    return Rival(c, probability, alike, values, parameters)
 
 
 def _worth_of_curve(

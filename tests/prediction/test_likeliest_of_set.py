@@ -13,6 +13,7 @@ from identification.prediction.judging.odds import find_odds
 from identification.prediction.moves.add_set import with_one
 from identification.prediction.moves.likeliest_of_set import likeliest_of_set
 from identification.prediction.task import RecordsTask
+from identification.prediction.verdict import told_effects
 from identification.windows.records import as_records
 
 TRUE = ("quadratic_friction.c@hinge", 0.01)
@@ -97,3 +98,21 @@ def test_what_physics_forbids_is_asked_again_beside_what_was_found_since():
     assert first.candidate.key == mine.candidate.key
     assert find_odds(first, model).own > 0.5
     assert second is found
+
+
+def test_a_rival_and_another_name_of_the_same_force_have_the_sizes_of_their_own_fits(monkeypatch):
+    """The verdict tells each name of a set with its own size, and not that of the first one."""
+    state = with_accepted("quadratic_friction")
+    (mine,) = state.accepted
+    (other, *_) = mine.alternatives
+    odds = replace(
+        find_odds(mine, state.model), rivals=((other, 0.4),), twin=other.candidate.key[0]
+    )
+    monkeypatch.setattr(told_effects, "find_odds", lambda *_: odds)
+    named = told_effects.named_effect(state, mine, 0.95, None)
+    (rival,) = named.rivals
+    assert (rival.name, named.twin.name) == (other_name(), other_name())
+    assert named.twin.confidence == named.confidence
+    _, sizes = told_effects.fitted_sizes(other.model, other.candidate)
+    assert rival.parameters == named.twin.parameters == sizes
+    assert {s.name for s in rival.candidate.effect.sizes} <= {*sizes}

@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from records_cases import listed, nominal_model, pendulum, record, records, search
 
@@ -14,6 +15,8 @@ from identification.prediction.selection import selection
 from identification.prediction.verdict import verdict
 from identification.report.discovery.json import discovery_to_json
 from identification.report.discovery.report import discovery_text
+from identification.report.words.proof import agreement_sentences
+from identification.report.words.rest import resting
 from identification.runtime import pool
 
 SAMPLES = 300  # of each record
@@ -54,6 +57,30 @@ def test_a_record_that_repeats_another_is_no_further_witness():
     answer = search([first, second, third, again], FEW[:1], max_minutes=0.0)
     assert answer.repeats == ("again",)
     assert discovery_to_json(answer)["repeats"] == ["again"]
+
+
+def test_a_record_at_rest_is_no_witness_and_repeats_nothing():
+    """It counted as one on which a name is right or wrong, or as a motion that was fitted."""
+    first, second, third = records(3, {MU: 0.15}, samples=SAMPLES)
+    noise = 3e-4 * np.random.default_rng(5).standard_normal(third.outputs.shape)
+    still = replace(third, name="still", inputs=0 * third.inputs, outputs=noise)
+    # which refits nothing: records are told before
+    answer = search([first, second, third, still], FEW[:1], max_minutes=0.0)
+    assert answer.repeats == ()
+    assert resting(answer) == discovery_to_json(answer)["resting"] == ["still"]
+    told = replace(found().named[0].proof, agrees=(third.name, "still"), untouched=None)
+    named = replace(found().named[0], proof=told)
+    assert agreement_sentences(answer, named) == (
+        " The named effect lowers the error on the unseen record. still, in which the robot hardly"
+        " moves, does not count."
+    )
+    assert "In still the robot hardly moves, so that this proves little" in discovery_text(answer)
+    alone = search([first, second, still, replace(still, name="too", outputs=-noise)], FEW[:1],
+                   max_minutes=0.0)  # fmt: skip
+    assert agreement_sentences(alone, named) == (
+        " In all unseen records the robot hardly moves, so that they hardly confirm it."
+    )
+    assert resting(found()) == []
 
 
 def test_records_too_short_to_confirm_are_refused():

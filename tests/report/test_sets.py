@@ -7,9 +7,13 @@ from elbow_cases import elbow
 from fake_discovery import found
 
 from identification import read_robot
+from identification.report.discovery.effect_sections import rivals_section
+from identification.report.discovery.json import discovery_to_json
 from identification.report.discovery.named_words import confidence_of_set, likely_rivals
 from identification.report.discovery.report import discovery_headline
 from identification.report.discovery.verdict import discovery_verdict
+from identification.report.words.effects import describe_effect, describe_sizes
+from identification.report.words.values import phrase
 from identification.robot.results.discovery_files import RobotDiscoveryFiles
 
 
@@ -38,8 +42,7 @@ def test_a_model_that_has_another_one_than_the_likeliest_says_so():
     answer = odds(0.3, 0.6)
     assert discovery_headline(answer).lead.endswith("and the first is not the likeliest")
     assert (
-        "The model got the first one, which is not the likeliest, with"
-        in (discovery_verdict(answer)[0])
+        "The model got the first one, which is not the likeliest." in (discovery_verdict(answer)[0])
     )
 
 
@@ -59,6 +62,39 @@ def test_a_set_is_no_surer_than_a_name_may_be(unexplained, most):
     answer = odds(0.6, 0.4, unexplained=unexplained)
     assert confidence_of_set(answer, answer.named[0]) == most
     assert f"with a confidence of {100 * most:.0f} %." in discovery_verdict(answer)[0]
+
+
+def test_each_name_of_a_set_has_the_sizes_of_its_own_fit():
+    """Only the size of the first one was told, and the truth may be another one."""
+    answer = odds(0.5, 0.3, 0.2)
+    first, *_ = answer.named
+    sized = replace(first.rivals[0], parameters={"delta": (0.2, 0.03, "")})
+    second, third = replace(sized, confidence=0.3), first.rivals[1]
+    answer = replace(answer, named=(replace(first, rivals=(second, third)),))
+    said, rival = discovery_verdict(answer)[0], describe_effect(second.candidate)
+    assert f"(50 %), {describe_sizes(first, answer.final.plant)}; {rival}" in said
+    sizes = describe_sizes(second)
+    assert sizes.startswith("delta = 20.0 ± 3.0 %")
+    assert f"; {rival} (30 %), {sizes}; {rival} (20 %). It is one of them" in said
+    assert "The model got the first one." in said
+    assert f"; or {rival} (30 %), {sizes}; or " in discovery_headline(answer).answers[0].place
+    rows = rivals_section(answer).table.rows
+    assert [row[2] for row in rows] == [sizes, ""]
+    told = discovery_to_json(answer)["effects"][0]["rivals"][0]["parameters"]
+    assert told == {"delta": {"value": 0.2, "std": 0.03, "unit": ""}}
+
+
+def test_another_name_of_the_same_force_has_its_own_size():
+    answer = odds(0.5)
+    (first,) = answer.named
+    twin = replace(found(one_of=True).named[0].rivals[0], parameters={"delta": (0.2, 0.03, "")})
+    effect, sizes = twin.candidate.effect, describe_sizes(twin)
+    (said, *_) = discovery_verdict(
+        replace(answer, named=(replace(first, same_as=effect, twin=twin),))
+    )
+    assert f'(or "{phrase(effect)}", {sizes}: below the Coulomb friction it is' in said
+    (said, *_) = discovery_verdict(replace(answer, named=(replace(first, same_as=effect),)))
+    assert f'(or "{phrase(effect)}": below the Coulomb friction it is' in said
 
 
 def test_what_is_far_less_likely_than_the_first_is_not_told():

@@ -25,6 +25,34 @@ def test_input_errors_that_cannot_be_believed_are_no_noise(verdict, input_error,
     assert disturbed.floor_rms == pytest.approx(hypot(NOISE, 0.05) if counts else NOISE)
 
 
+@pytest.mark.parametrize(("several", "chances"), [
+    (False, "0.5 % of cases."),
+    (True, "0.5 % for friction – Stribeck peak, all drives and 0.5 % for friction"),
+])  # fmt: skip
+def test_a_name_and_an_error_as_small_as_the_noise_do_not_contradict_each_other(several, chances):
+    """The noise is estimated a little too high, and 5 % of the error are beyond chance."""
+    made = found(several=several)
+    proof = replace(made.named[0].proof, chance=0.005)
+    noise = made.before.rms / 1.02
+    close = replace(
+        made, noise_rms=noise, share=0.9, named=tuple(replace(n, proof=proof) for n in made.named),
+        unlogged=None, after=replace(made.after, rms=0.95**0.5 * made.before.rms),
+    )  # fmt: skip
+    said, text = " ".join(discovery_verdict(close)), discovery_text(close)
+    assert (
+        "The error before was 1.02 times the estimated noise, which may be estimated a little too"
+        f" high: with {'them' if several else 'it'} the mean square falls by 5 %, which chance"
+        f" would do in {chances}"
+    ) in said
+    assert "of the power above the noise" not in said
+    assert "as small as the noise" not in text
+    assert ", 1.02 times the estimated noise" in text.partition("before")[2].partition("after")[0]
+    far = replace(close, noise_rms=made.before.rms / 1.2)
+    assert "The error before was" not in " ".join(discovery_verdict(far))
+    left = replace(close, unexplained=True, noise_rms=close.after.rms / 1.03)
+    assert ", 1.03 times the estimated noise." in " ".join(discovery_verdict(left))
+
+
 def test_a_sensor_is_called_noisy_beside_those_of_its_unit_only():
     names = [*found().outputs]
     alike = dict.fromkeys(names, NOISE)

@@ -130,9 +130,26 @@ def test_each_effect_has_its_standing_and_only_what_torques_name_is_the_same(
     assert ("only the torques name" in said or "do not tell it from" in said) == bool(only)
     assert ("first: cogging, joint elbow, k = 0.200" in said) == (own[:1] == ["cogging"])
     assert ("too: cogging, joint elbow" in said) == (own[1:] == ["cogging"])
-    assert ("name no effect" in said) == (not own)
+    assert ("name no effect of their own; friction, which they" in said) == (not own)
     one_sided = bool(names) and bool(only) and names[0] not in own
     assert ("only the search over windows names spring" in said) == one_sided
+
+
+def test_torques_that_tell_a_friction_do_not_say_that_they_name_nothing():
+    """An offset was told with its size, and the next sentence said "They name no effect"."""
+    found = told(["stiffness"], [score("stiffness", "small")])
+    (o,) = [replace(o, fall=None, sizes={"f_0": (0.3, 0.2, "N m")}) for o in found.torques]
+    first, last = opinion_sentences(replace(found, torques=(o,)))
+    assert "f_0 = 0.30 ± 0.20 N m: it may be what the model has" in first
+    assert last == (
+        "They name no effect of their own; friction, which they always fit, does not count as one."
+    )
+
+
+def test_what_torques_tell_as_good_within_chance_has_its_own_size():
+    scores = [score("cogging"), score("stiffness")]
+    said = opinion_sentences(told([], scores, own=scores[:1], rivals=scores[1:]))[0]
+    assert said.endswith("; within chance as good: stiffness, joint elbow, k = 0.200 ± 0.010 N m.")
 
 
 def test_the_same_law_at_another_place_is_another_name():

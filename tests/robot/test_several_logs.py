@@ -14,7 +14,7 @@ from robot_cases import refused, run
 from identification import fit, read_robot
 from identification.__main__ import main
 from identification.logs.joined import REPLAYED, replayed_share
-from identification.report.fit.verdict import _blind
+from identification.report.fit.window_words import blind_sentences
 from identification.robot.file.file import read_robot_file
 from identification.robot.results.fit_files import robot_fit_to_json
 
@@ -80,7 +80,7 @@ def test_directions_that_are_not_told_stand_in_one_short_sentence():
     blind = np.array([[0.7, -0.7, 0, 0], [0, 0, 0.6, 0.8], [0, 1, 0, 0]])
     record = SimpleNamespace(role="fit", log=SimpleNamespace(inputs=np.ones(2)))
     model = SimpleNamespace(fit=SimpleNamespace(problem=problem))
-    several, single = _blind(SimpleNamespace(model=model, blind=blind, records=[record]))
+    several, single = blind_sentences(SimpleNamespace(model=model, blind=blind, records=[record]))
     assert "(a +0.70, b -0.70) and (d +0.80, c +0.60)" in several
     assert len(several.split()) < 60
     assert "less about b than was known" in single

@@ -11,7 +11,8 @@ from torque_cases import TOML, planar, planar_record, planar_robot
 from identification import fit_torques
 from identification.__main__ import main
 from identification.logs.formats.csv_files import write_log
-from identification.report.torques.words import centre_words
+from identification.report.torques.report import torque_headline
+from identification.report.torques.tables import centre_words
 from identification.robot.torques import free_numbers
 from identification.torques.equations.others import Others
 
@@ -69,8 +70,19 @@ def test_where_nothing_is_missing_nothing_is_named(tmp_path):
 
 
 def test_a_friction_that_the_model_lacks_is_told(tmp_path):
-    found = fit_torques(planar_robot(tmp_path, planar_record(61, f=1.6)))
-    (said,) = [s for s in found.to_dict()["verdict"] if "differ from the model" in s]
+    """The first sentence said that nothing is proven, and a later one told two frictions."""
+    robot = planar_robot(tmp_path, planar_record(61, f=1.6))
+    found = fit_torques(robot)
+    first, *rest = found.to_dict()["verdict"]
+    (said,) = [s for s in rest if "differ from the model" in s]
+    assert first.startswith(
+        "Apart from frictions that differ from the model (coulomb of shoulder and coulomb of"
+        " elbow), told below, the torques prove no effect. "
+    )
+    (answer,) = torque_headline(found.found, robot.plant.model).answers
+    assert answer.name == "No effect is proven"
+    assert answer.place.startswith("apart from frictions that differ from the model: coulomb of s")
+    assert answer.place.endswith("(model 1 N m)")
     assert "coulomb of shoulder" in said
     assert "coulomb of elbow" in said
     assert "(model 1 N m)" in said

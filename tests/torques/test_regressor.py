@@ -108,6 +108,15 @@ def test_logs_without_a_drive_are_refused(refusal):
     assert "no input moves" in refusal(make_rows, model, (replace(log, inputs=0 * log.inputs),))
 
 
+def test_a_motion_that_reverses_too_often_is_told_in_these_words(refusal):
+    """It said "between two turns", which may as well be revolutions of a motor."""
+    model, log = mujoco.MjModel.from_xml_string(planar()), planar_record(1, lasts=4.0)
+    fast = 0.1 * np.sin(2 * np.pi * 20 * log.time)[:, None] * [1, 0.7]
+    said = refusal(make_rows, model, (replace(log, outputs=fast),))
+    assert "between two reversals of its direction" in said
+    assert "turns" not in said
+
+
 def test_a_value_of_one_record_is_known_there():
     model, loaded = (mujoco.MjModel.from_xml_string(planar(m)) for m in (0.0, 0.7))
     logs = planar_record(1, lasts=4.0), planar_record(2, 0.7, lasts=4.0)

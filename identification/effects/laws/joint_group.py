@@ -166,7 +166,7 @@ def wave_sizes(g: Group) -> tuple[Size, ...]:
 
 
 def waves(g: Group) -> tuple[Shape, ...]:
-    """Returns how often a periodic force repeats: in a turn, or in 2π m of a slide.
+    """Returns how often a periodic force repeats: per revolution, or in 2π m of a slide.
 
     A wave of which the log shows fewer than `SEEN` periods is not seen to repeat: any curve would
     do as well. Returns none where there is no wave to try.
@@ -179,7 +179,7 @@ def waves(g: Group) -> tuple[Shape, ...]:
     if not seen:
         return ()
     high = max(48.0, *seen)
-    return (Shape("n", "", seen, least, high, free=False, about="periods in a turn"),)
+    return (Shape("n", "", seen, least, high, free=False, about="periods per revolution"),)
 
 
 SLIDE = "slide_"  # before names of effects of slides, on a robot that has hinges too

@@ -41,8 +41,10 @@ def named_effect(
     final = state.model if is_final else accepted.model
     odds = find_odds(accepted, final)
     candidate, parameters = fitted_sizes(final, mine)
+    own = min(limit, odds.own)
+    twins = [o for o in accepted.alternatives if o.candidate.key == (odds.twin, mine.where)]
     return NamedEffect(
-        candidate=candidate, parameters=parameters, confidence=min(limit, odds.own),
+        candidate=candidate, parameters=parameters, confidence=own,
         rivals=tuple(
             _rival(o, share) for o, share in odds.rivals if share > MIN_LISTED_CONFIDENCE
         ),
@@ -50,6 +52,7 @@ def named_effect(
         one_of=bool(odds.likeliest and odds.likeliest[1] > options.set_confidence),
         evidence=accepted.criterion, proof=_proof(state, accepted),
         same_as=next((e for e in state.task.effects if e.name == odds.twin), None),
+        twin=_rival(twins[0], own) if twins else None,
         smooth_share=stick.share_of(mine, explained.law, explained.curves) if stick else None,
         neighbour=accepted.neighbour or neighbour_of(accepted, state, stick),
     )  # fmt: skip
@@ -96,10 +99,11 @@ def unnamed_effect(named: NamedEffect, doubt: Doubt | None) -> RejectedEffect:
 
 def _rival(contender: Contender, confidence: float) -> Rival:
     """Returns another effect with the values of its law, at those of its own model."""
-    candidate, _ = fitted_sizes(contender.model, contender.candidate)
+    candidate, parameters = fitted_sizes(contender.model, contender.candidate)
     every, own = contender.model.told_values, (*candidate.sizes, *candidate.fixed)
     values = {n: float(every[n]) for n in own if n in every}
-    return Rival(candidate, confidence, values={**candidate.fixed, **candidate.whole, **values})
+    values = {**candidate.fixed, **candidate.whole, **values}
+    return Rival(candidate, confidence, values=values, parameters=parameters)
 
 
 def fitted_sizes(

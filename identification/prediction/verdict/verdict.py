@@ -25,6 +25,7 @@ from identification.discovery.options import DiscoveryOptions
 from identification.discovery.result import Discovery, Verdict
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
+from identification.logs.rest import is_at_rest
 from identification.prediction.fits.model import WindowModel
 from identification.prediction.fits.record_errors import error_of_all, errors_by_unit, record_errors
 from identification.prediction.judging.extension import refitted
@@ -189,10 +190,14 @@ def _failed(state: WindowSearch) -> tuple[Failed, ...]:
 
 
 def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
-    """Returns the names of records that confirm, but repeat a fitted one or one before them."""
-    distinct = [r.log for r in records if r.role == "fit"]
-    repeats = []
-    for log in (r.log for r in records if r.role == "confirm"):
+    """Returns the names of records that confirm, but repeat a fitted one or one before them.
+
+    One in which the robot hardly moves, which any rest of a fitted one replays, is told apart.
+    """
+    fitted = [r.log for r in records if r.role == "fit"]
+    distinct, repeats = [*fitted], []
+    moving = [r.log for r in records if r.role == "confirm" and not is_at_rest(fitted, r.log)]
+    for log in moving:
         if replayed_share(distinct, log) > REPLAYED:
             repeats.append(log.name)
         else:

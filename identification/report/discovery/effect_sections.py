@@ -108,7 +108,7 @@ def rivals_section(found: Discovery) -> Section:
     best = [score for score in each.values() if score.p_value < LUCK]
     rows = tuple(
         (describe_effect(r.candidate), percent(r.confidence),
-         describe_effect(n.candidate), r.alike)
+         describe_sizes(r, found.final.plant), describe_effect(n.candidate), r.alike)
         for n in found.named
         for r in n.rivals
     )  # fmt: skip
@@ -128,7 +128,7 @@ def rivals_section(found: Discovery) -> Section:
         "Who could explain it",
         "\n\n".join(filter(None, [*parts, after])),
         figures=cache(partial(score_figures, found, best[:BEST], axis, caption)) if best else (),
-        table=Table(("rival", "confidence", "named", "alike"), rows) if rows else None,
+        table=Table(("rival", "confidence", "size", "named", "alike"), rows) if rows else None,
         plain="\n\n".join(filter(None, [after, listed_below(explained, lines)])),
     )
 

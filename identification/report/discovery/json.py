@@ -25,6 +25,7 @@ from identification.report.discovery.missing_place import find_place
 from identification.report.discovery.named_words import curve_nodes
 from identification.report.discovery.verdict import discovery_verdict
 from identification.report.words.parts import parts_to_json
+from identification.report.words.rest import resting
 from identification.windows.coarse import steps_of
 
 GAP = ("rms", "fit_percent", "rms_by_unit")
@@ -78,6 +79,7 @@ def discovery_to_json(found: Discovery) -> dict[str, Any]:
         "torques_refused": found.torques_refused,
         "parts": parts_to_json(found),
         **plain_fields(found, "shifts", "repeats", "horizon"),
+        "resting": resting(found),
         "timestep": dict(zip(("simulated", "model"), steps_of(found.nominal.plant), strict=True)),
         "input_error": plain(found.input_error),
         "located": [describe_finding(finding) for finding in findings],
@@ -168,10 +170,12 @@ def _named_to_json(named: NamedEffect, plant: Plant) -> dict[str, Any]:
                     for n, v in r.values.items()
                     if n in (*r.candidate.sizes, *r.candidate.fixed)
                 },
+                "parameters": _parameters_to_json(r.parameters),
             }
             for r in named.rivals
         ],
         "same_as": named.same_as.name if named.same_as else None,
+        "same_as_parameters": _parameters_to_json(named.twin.parameters) if named.twin else None,
         "advice": named.advice or None,
         **_proofs_to_json(named.proof),
         **plain_fields(named.proof.told, "agrees", "disagrees"),

@@ -22,7 +22,7 @@ from identification.report.words.effects import (
     describe_there,
     largest_known,
 )
-from identification.report.words.errors import listed
+from identification.report.words.proof import agreement_sentences
 from identification.report.words.values import phrase, words_of
 from identification.shares import fall_words, percent
 
@@ -124,7 +124,7 @@ def named_sentences(found: Discovery, named: NamedEffect) -> str:
         outside = f" Or it is {describe_outside(named.outside)}."
     return (
         f"{_named(found, named)}{nearest_law(found, named)}{_retuned(found, named)}{outside}"
-        f"{_agreement(found, named)}"
+        f"{agreement_sentences(found, named)}"
     )
 
 
@@ -136,25 +136,38 @@ def _named(found: Discovery, named: NamedEffect) -> str:
         first += " (in no catalogue, drawn from the data)"
     mine = describe_there(named.candidate, plant)
     if named.same_as is not None:  # another name of the same force
+        sized = f", {describe_sizes(named.twin)}" if named.twin else ""
         mine += (
-            f' (or "{phrase(named.same_as)}": below the Coulomb friction it is the same force, and'
-            " no record tells the two apart)"
+            f' (or "{phrase(named.same_as)}"{sized}: below the Coulomb friction it is the same'
+            " force, and no record tells the two apart)"
         )
-    is_set = named.one_of and bool(named.rivals)
+    if named.one_of and named.rivals:
+        each = [with_sizes(f"{mine} ({percent(own)})", named, plant)]
+        each += [rival_words(r, plant) for r in likely_rivals(named)]
+        return (
+            f"{first} is one of these, and the data do not tell which: {'; '.join(each)}. It is one"
+            f" of them with a confidence of {percent(confidence_of_set(found, named))}. The model"
+            f" got the first one{'' if is_likeliest(named) else ', which is not the likeliest'}."
+            + (f" {named.advice}" if named.advice else "")
+        )
     others = [
         f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})"
         for r in likely_rivals(named)
     ]  # fmt: skip
-    if is_set:
-        return (
-            f"{first} is one of these, and the data do not tell which:"
-            f" {'; '.join([f'{mine} ({percent(own)})', *others])}. It is one of them with a"
-            f" confidence of {percent(confidence_of_set(found, named))}. The model got the first"
-            f" one{'' if is_likeliest(named) else ', which is not the likeliest'}, with"
-            f" {describe_sizes(named, plant)}." + (f" {named.advice}" if named.advice else "")
-        )
     less = f" Less likely: {'; '.join(others)}." if others else ""
     return f"{first}: {mine}, {describe_sizes(named, plant)}; confidence {percent(own)}.{less}"
+
+
+def rival_words(rival: Rival, plant: Plant) -> str:
+    """Returns a member of a set with its odds and the sizes that its own fit gave it."""
+    return with_sizes(
+        f"{describe_there(rival.candidate, plant)} ({percent(rival.confidence)})", rival, plant
+    )
+
+
+def with_sizes(said: str, effect: NamedEffect | Rival, plant: Plant) -> str:
+    """Returns words on an effect with its sizes behind them, where these are known."""
+    return ", ".join(filter(None, [said, describe_sizes(effect, plant)]))
 
 
 def likely_rivals(named: NamedEffect) -> list[Rival]:
@@ -244,29 +257,3 @@ def _retuned(found: Discovery, named: NamedEffect) -> str:
         f" Or no effect is missing ({percent(other.confidence)}): the model explains the same if"
         f" {what} is {far} what was given as known. Measure it, or record another motion."
     )
-
-
-def _agreement(found: Discovery, named: NamedEffect) -> str:
-    """Returns sentences on the unseen records that it helps, without those that repeat others."""
-    names = [e.name for e in found.errors if e.role == "confirm"]
-    names = names or [e.name for e in found.errors if len(found.errors) > 1]
-    distinct = [name for name in names if name not in found.repeats]
-    helped = [name for name in distinct if name in named.proof.told.agrees]
-    said = ""
-    if distinct:
-        what = "curve" if named.candidate.effect.is_curve else "named effect"
-        which = f" ({listed(helped)})" if 0 < len(helped) < len(distinct) else ""
-        said = f" The {what} lowers the error on {len(helped)} of {len(distinct)} unseen records"
-        if len(distinct) == 1:
-            does = "lowers" if helped else "does not lower"
-            said = f" The {what} {does} the error on the unseen record"
-        said += f"{which}."
-    elif names:
-        said = " All unseen records repeat what was fitted, so that they hardly confirm it."
-    if found.repeats and distinct:
-        one = len(found.repeats) == 1
-        said += f" {', '.join(found.repeats)} {'repeats' if one else 'repeat'} the motion of others"
-        said += " and does not count." if one else " and do not count."
-    if worse := named.proof.told.disagrees:
-        said += f" It raises the error on {', '.join(worse)} beyond chance."
-    return said

@@ -10,6 +10,7 @@ from identification.report.discovery.shown_words import SHOWN
 from identification.report.words.effects import describe_effect
 from identification.report.words.errors import error_words
 from identification.report.words.parts import unseen_of
+from identification.report.words.rest import are_all_resting
 from identification.report.words.values import phrase
 from identification.shares import HELD, decimal, ratio_of, times
 
@@ -67,7 +68,7 @@ def nothing_sentence(found: Discovery) -> str:
         )
     else:
         said = (
-            f"Nothing is missing{'' if found.detectable else ', as far as these data can tell'}:"
+            f"Nothing is missing{_as_far(found)}:"
             f" the error of the fitted model on unseen data{where} is noise. It is"
             f" {left}{found.over}, and {who} cause {noise}."
         )
@@ -82,6 +83,13 @@ def nothing_sentence(found: Discovery) -> str:
         names = dict.fromkeys(phrase(d.candidate.effect) for d in unseen)
         said += f" It would not show these effects at any plausible size: {'; '.join(names)}."
     return said
+
+
+def _as_far(found: Discovery) -> str:
+    """Returns how far data can tell that nothing is missing; "" where what they show follows."""
+    if are_all_resting(found):
+        return ", as far as data can tell in which the robot hardly moves"
+    return "" if found.detectable else ", as far as these data can tell"
 
 
 def _rest(found: Discovery, alone: str) -> str:

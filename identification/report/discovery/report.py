@@ -27,6 +27,7 @@ from identification.report.discovery.named_words import (
     curve_top,
     is_likeliest,
     likely_rivals,
+    rival_words,
 )
 from identification.report.discovery.nothing_words import is_above_noise
 from identification.report.discovery.sections import (
@@ -43,13 +44,13 @@ from identification.report.page.headline import Answer, Headline, Tile, capital,
 from identification.report.page.page import Section, write_report
 from identification.report.page.page_files import PageFiles
 from identification.report.words.effects import (
-    describe_there,
     none_explains,
     number,
     say_choice,
     shown_parameters,
 )
 from identification.report.words.parts import unseen_of
+from identification.report.words.rest import are_all_resting
 from identification.report.words.values import without_colon
 from identification.shares import percent
 
@@ -155,6 +156,8 @@ def discovery_headline(found: Discovery) -> Headline:
                  "in 9 logs of 10, at a plausible size")  # fmt: skip
     known = Tile("known effects tried", str(tried))
     name, place = "Nothing is missing", "as far as these data can tell"
+    if are_all_resting(found):
+        place = "as far as data can tell in which the robot hardly moves"
     if is_above_noise(found):
         name, place = "No effect is named", "No candidate lowers the error beyond chance."
     return Headline("", (Answer(name, place, _three([left, shown if told else None, known])),))
@@ -185,9 +188,7 @@ def _named(found: Discovery, named: NamedEffect) -> Answer:
     if named.compared:
         note = f"{named.compared} rival{'s' if named.compared > 1 else ''} refitted in its place"
     if named.one_of and rivals:
-        others = [
-            f"{describe_there(r.candidate, plant)} ({percent(r.confidence)})" for r in rivals
-        ]  # fmt: skip
+        others = [rival_words(r, plant) for r in rivals]
         place = f"{place} ({own}); or {'; or '.join(others)}"
         total = percent(confidence_of_set(found, named))
         confidence = Tile("confidence, together", total, f"{own} for the first alone")

@@ -26,8 +26,9 @@ from identification.report.fit.fitted_values import (
 from identification.report.page.page import Section, Table
 from identification.report.words.errors import error_words
 from identification.report.words.parts import parts_sentence, unseen_of
+from identification.report.words.proof import is_at_noise
 from identification.report.words.values import departures_found, gathered, words_of
-from identification.shares import decimal, fall_words, times_noise
+from identification.shares import decimal, fall_words, times_estimated, times_noise
 from identification.windows.coarse import steps_of
 
 DIGITS = 3  # of errors of records
@@ -71,11 +72,14 @@ def gap_section(found: Discovery) -> Section:
             ("after", "with what was missing", found.after)]  # fmt: skip
     errors = [found.errors_of(gap) for *_, gap in told]
     sizes, rows, lines = error_words(errors, ""), [], []
+    # What is named has shown that an error as small as the noise is not noise alone.
+    is_named = bool(found.named) and is_at_noise(found, found.before)
+    beside_noise = times_estimated if is_named else times_noise
     for (when, model, gap), size, rms in zip(told, sizes, error_words(errors), strict=True):
         ratio, fit = found.times_noise(gap), gap.fit_percent[np.isfinite(gap.fit_percent)]
         times = held(ratio) if isfinite(ratio) else None
         rows.append((model, size, times, decimal(fit.mean(), FIT_DIGITS) if len(fit) else None))
-        lines.append(f"  {when:<7}{rms}" + (f", {times_noise(ratio)}" if times else ""))
+        lines.append(f"  {when:<7}{rms}" + (f", {beside_noise(ratio)}" if times else ""))
     title, said = f"error on unseen data{unseen_of(found)}:", parts_sentence(found)
     return Section(
         "The gap on unseen data",

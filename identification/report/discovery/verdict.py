@@ -34,12 +34,21 @@ from identification.report.words.effects import (
     none_explains,
 )
 from identification.report.words.errors import change_words, describe_scale, error_words, listed
-from identification.report.words.parts import is_untouched, unseen_of
+from identification.report.words.parts import unseen_of
+from identification.report.words.proof import is_at_noise, proof_sentences
+from identification.report.words.rest import rest_sentences, resting
 from identification.runtime.progress import duration
-from identification.shares import HELD, change, fall_words, percent, ratio_of, times, times_noise
+from identification.shares import (
+    HELD,
+    fall_words,
+    percent,
+    ratio_of,
+    times,
+    times_estimated,
+    times_noise,
+)
 from identification.storage.shown import verdict_of
 
-NOT_FITTED = "the fit has not seen, but on which the search has decided"
 SOUGHT = {  # what the moves that the time limit ends seek, by their names
     "add_effect": "the next effect",
     "add_yielding_friction": "a friction that yields before it slips",
@@ -48,15 +57,14 @@ SOUGHT = {  # what the moves that the time limit ends seek, by their names
     "add_pair": "pairs of effects",
     "add_deviants": "parts that deviate from the others",
 }
-EXACT_SHARE = 0.97  # a law with less is told to be inexact
-ALMOST = 0.9999  # nearly all: "more than 99.9 %"
 
 
 @verdict_of.register
 def discovery_verdict(found: Discovery) -> list[str]:
     """Returns sentences: the verdict first, then what supports it."""
     bounds = bound_sentences(found.final.plant.parameters, found.at_bound)
-    told = [*_noisier(found), *difference_sentences(found), *bounds]
+    still = rest_sentences(resting(found), found.run is not None)
+    told = [*still, *_noisier(found), *difference_sentences(found), *bounds]
     return [*_verdict(found), *_cut_short(found), *opinion_sentences(found), *told]
 
 
@@ -81,7 +89,7 @@ def _verdict(found: Discovery) -> list[str]:
         + limit_of_named(named, found.final)
         for named in found.named
     ]
-    said.append(_proof(found))
+    said.append(proof_sentences(found))
     if found.unexplained:
         said.append(_unexplained(found))
     else:  # how the search began, where the fit without effects was worse
@@ -238,7 +246,8 @@ def _unexplained(found: Discovery) -> str:
     findings = _findings(found)
     more = "named effect" if len(found.named) == 1 else "named effects"
     ratio = found.times_noise(found.after)
-    times = f", {times_noise(ratio)}" if 1 < ratio < inf else ""
+    noise = times_estimated(ratio) if is_at_noise(found, found.after) else times_noise(ratio)
+    times = f", {noise}" if 1 < ratio < inf else ""
     (left,) = error_words([found.errors_of(found.after)])
     return " ".join(
         [
@@ -262,49 +271,3 @@ def _nearest(found: Discovery) -> list[str]:
         f" run {fall_words(told.fall, HELD)}. It is too small to matter, or another effect is"
         " likelier."
     ]
-
-
-def _proof(found: Discovery) -> str:
-    """Returns sentences on how far the error on unseen data falls, beside the noise."""
-    errors = found.errors_of(found.before), found.errors_of(found.after)
-    moved, (noise, own) = change_words(*errors, [found.floor, found.sensors])
-    whom = "it" if len(found.named) == 1 else "them"
-    rest = f", of which the sensors cause {own} and unlogged errors of the inputs the rest"
-    made = rest if found.floor_rms > found.noise_rms else ""
-    of = found.over and f" of prediction{found.over}"
-    square = (found.after.rms / found.before.rms) ** 2 - 1 if found.before.rms > 0 else 0.0
-    is_one = found.scale is not None or len(errors[0]) == 1  # else the square has no meaning
-    changed = f" (mean square {change(square)})" if is_one else ""
-    data = "neither the fit nor the search has used" if is_untouched(found) else NOT_FITTED
-    said = (
-        f"On data that {data}, the error{of} falls {moved} with {whom} in the"
-        f" model{changed}; the noise is {noise}{made}."
-    )
-    if found.share is not None:
-        # Of outputs of several units one may be above its noise while the sum of all is not.
-        share = min(found.share, ALMOST) if found.times_noise(found.after) > 1 else found.share
-        said += f" This removes {percent(share)} of the power above the noise."
-    return f"{said}{_smooth(found)}"
-
-
-def _smooth(found: Discovery) -> str:
-    """Returns sentences on what the named effects explain of what smooth forces could.
-
-    Each of several that is not exact is told by itself.
-    """
-    if found.smooth_share is None:
-        return ""
-    inexact = [
-        f"{percent(n.smooth_share)} for {describe_effect(n.candidate)}"
-        for n in found.named
-        if len(found.named) > 1 and n.smooth_share is not None and n.smooth_share < EXACT_SHARE
-    ]
-    each = f" At their own joints the shares are {listed(inexact)}." if inexact else ""
-    who, alone = "this effect", "it alone explains"
-    if len(found.named) > 1:
-        who, alone = "these effects", "they alone explain"
-    return (
-        " Smooth forces of any shape at the joints (over rate, position, drive or time), added to"
-        f" {who}, show how much can be explained at most: {alone}"
-        f" {percent(found.smooth_share)} of that.{each}"
-    )

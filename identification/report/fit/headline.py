@@ -11,7 +11,13 @@ from identification.estimation.fit import Fit
 from identification.prediction.fits.record_errors import errors_by_unit
 from identification.prediction.records_fit import RecordsFit
 from identification.report.fit.step_words import part_of_steps
-from identification.report.fit.verdict import error_over_noise, judged_on, most_of_noise
+from identification.report.fit.verdict import (
+    REST,
+    error_over_noise,
+    judged_on,
+    most_of_noise,
+    rests,
+)
 from identification.report.page.headline import Answer, Headline, Tile, error_tile
 from identification.report.words.effects import value_with_std
 from identification.shares import times_noise
@@ -58,6 +64,8 @@ def _judged(fit: Fit | RecordsFit, is_better: bool) -> tuple[str, str]:
         )
     if ratio > most:
         return "Fitted, and something is missing", f"{left}; discover looks for what it is."
+    if rests(fit):
+        return "Fitted, and not confirmed", f"{left}, {REST}."
     if not is_better:
         said = "but unseen data do not confirm that the values are better"
         return "Fitted, and not confirmed", f"{left}, {said}."

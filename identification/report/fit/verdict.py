@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from math import isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from identification.estimation.fit import Fit
-from identification.estimation.identifiability import in_words
 from identification.estimation.metrics import output_units, relative
 from identification.report.fit.fitted_values import first_few, std_sentence, step_sentences
 from identification.report.fit.step_words import free_run_steps, part_of_steps, steps_answer
@@ -18,12 +16,18 @@ from identification.report.fit.untold_words import (
     bound_sentences,
     cure,
     identifiable_sentences,
-    scale_of_forces,
     too_weak,
     weak_sentences,
 )
-from identification.report.words.errors import describe_scale, error_words, listed, times_words
+from identification.report.fit.window_words import (
+    blind_sentences,
+    count_windows,
+    few_sentences,
+    left_by_windows,
+)
+from identification.report.words.errors import describe_scale, error_words, times_words
 from identification.report.words.parts import records_words
+from identification.report.words.rest import is_all_at_rest
 from identification.shares import change, times_noise
 
 if TYPE_CHECKING:  # both are slow to import
@@ -38,6 +42,7 @@ SURE = 3.0  # such std, for a white residual that shows nothing but its size
 HOLDS = 1.2  # a fit holds on unseen data up to this multiple of the residual that is expected there
 GROWN = 10.0  # a free run that errs by more than this multiple of the fitted residual has diverged
 LEVEL = 0.01  # significance of the tests of the residual: one false alarm in a hundred
+REST = "but there the robot hardly moves, so that this proves little"
 CONVERGED = {True: "The search converged.", False: "The search ran out of iterations."}
 
 
@@ -103,9 +108,17 @@ def answer_sentence(fit: Fit | RecordsFit, is_better: bool = True) -> str:
             f"Something is missing from the model, or a column is not what it expects: {of_what};"
             " discover looks for what is missing."
         )
+    if rests(fit):
+        known = "Whether the model explains a motion that was not fitted is not known"
+        return f"{known}: {of_what}, {REST}."
     if not is_better:
         return f"The log does not show that anything is missing: {of_what}."
     return f"The model with the fitted values explains the log: {of_what}."
+
+
+def rests(fit: Fit | RecordsFit) -> bool:
+    """Returns whether the robot hardly moves in all data by which a fit is judged."""
+    return not isinstance(fit, Fit) and is_all_at_rest(fit.records)
 
 
 def fit_verdict(fit: Fit | RecordsFit) -> list[str]:
@@ -130,10 +143,10 @@ def _of_records(fit: RecordsFit) -> list[str]:
         CONVERGED[fit.converged],
         *filter(None, [std_sentence(model)]),
         *bound_sentences(model.plant.parameters, model.at_bound),
-        *_blind(fit),
+        *blind_sentences(fit),
         *([f"{too_weak(weak, 'windows')} {cure(weak)}"] if weak else []),
-        *_std_by_few(fit),
-        _left_by_windows(_count_windows(fit), fit.horizon, rms, floor, _names(fit, "fit")),
+        *few_sentences(fit),
+        left_by_windows(count_windows(fit), fit.horizon, rms, floor, _names(fit, "fit")),
     ]
     scale = describe_scale(output_units(fit.records[0].log), model.scale)
     return [*said, *scale, *step_sentences(model)]
@@ -147,7 +160,7 @@ def window_sentences(found: WindowEstimate, floor: float, unit: str) -> list[str
         said.append(
             f"The windows do not tell {' and '.join(unknown)}; fix one, or take longer windows."
         )
-    left = _left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
+    left = left_by_windows(len(found.residual), found.length, {unit: found.rms}, {unit: floor})
     return [*said, *weak_sentences(found), left]
 
 
@@ -176,18 +189,6 @@ def _begun(fit: Fit) -> list[str]:
 def coloured_outputs(fit: Fit) -> int:
     """Returns how many outputs' residuals are not white."""
     return int((fit.tests.white < LEVEL / len(fit.tests.white)).sum())
-
-
-def _left_by_windows(
-    count: int, length: float, rms: Mapping[str, float], floor: Mapping[str, float],
-    names: str = "",
-) -> str:  # fmt: skip
-    """Returns a sentence on the error that windows of a length [s] leave, and on the noise."""
-    (left,), (noise,) = error_words([rms]), error_words([floor], "")
-    ratio = f", {times_words(rms, floor)} times the noise floor of {noise}"
-    of = f"of {length:g} s{names and f' of {names}'}"
-    each = f"1 window {of} leaves" if count == 1 else f"{count} windows {of} leave"
-    return f"{each} {left}{ratio if any(floor.values()) else ''}."
 
 
 def _enough(fit: Fit) -> list[str]:
@@ -238,7 +239,9 @@ def _unseen(fit: Fit) -> list[str]:
             " little. Judge the model over a horizon."
         ]
     said = "it does not hold there: it has too many parameters, or an effect is missing"
-    if ratio < HOLDS:
+    if ratio < HOLDS and fit.validation_rests:
+        said = REST
+    elif ratio < HOLDS:
         said = "what was fitted holds there too"
         left = relative(fit.rms_by_unit, fit.floor_by_unit)
         most = most_of_noise(fit)
@@ -266,46 +269,3 @@ def _worse(fit: RecordsFit) -> list[str]:
         " parameters (known), or"
         " leave some of them out."
     ]
-
-
-def _blind(fit: RecordsFit) -> list[str]:
-    """Returns sentences on directions that the windows tell less of than was known before."""
-    names = fit.model.fit.problem.names
-    words = [in_words(direction, names) for direction in fit.blind]
-    several = [f"({word})" for word in words if "," in word]
-    single = [names[int(abs(d).argmax())] for d, word in zip(fit.blind, words, strict=True)
-              if "," not in word]  # fmt: skip
-    out = []
-    if several:
-        out.append(
-            f"The windows tell less than was known before the fit along {listed(several)}, where"
-            " the prior knowledge decides: if it is not sure, hold one parameter of each (held), or"
-            " record a motion that tells them apart."
-            f"{scale_of_forces([r.log for r in fit.records if r.role == 'fit'])}"
-        )
-    if single:
-        out.append(
-            f"The windows tell less about {listed(single)} than was known before the fit, so that"
-            " the prior knowledge decides. If it is not sure, record a motion that shows more."
-        )
-    return out
-
-
-def _std_by_few(fit: RecordsFit) -> list[str]:
-    """Returns the sentence on values that are fitted and of which few windows tell."""
-    rows = zip(fit.values, fit.is_told_by_few, fit.std, fit.at_bound, strict=True)
-    few = [n for n, is_few, std, at_bound in rows if is_few and np.isfinite(std) and not at_bound]
-    if not few:
-        return []
-    count = _count_windows(fit)
-    values, their, it = ("value", "Its", "it") if len(few) == 1 else ("values", "Their", "they")
-    told = "One window tells" if count == 1 else f"Few of the {count} windows tell"
-    return [
-        f"{told} the {values} of {', '.join(few)}. {their} std is right if the model errs there as"
-        f" it does elsewhere. To be sure that {it} {'is' if it == 'it' else 'are'} right, record"
-        " longer or give more logs."
-    ]
-
-
-def _count_windows(fit: RecordsFit) -> int:
-    return sum(len(part.cut.starts) for part in fit.model.fit.problem.parts)

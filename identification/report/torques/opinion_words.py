@@ -18,6 +18,7 @@ from identification.shares import decimal, fall_words, percent
 SURE = 3.0  # std of both together, from which two sizes are not the same
 TORQUES = "The torques of the measured motion, computed without a simulation,"
 SAME = {"armature": "a", "m": "M"}  # sizes that a search calls otherwise
+FRICTION = "friction, which they always fit, does not count as one"
 OTHERWISE = "otherwise"  # doubt of what is proven by itself, and is in no fit
 AGAINST = {  # why torques do not prove an effect
     "sign": "its size would have a sign that physics does not allow",
@@ -51,7 +52,8 @@ def opinion_sentences(found: Discovery) -> list[str]:
     elif own:
         clauses.append(_own(own, found))
     elif not any(o.standing == "named" for o in judged):
-        clauses.append(f"name no effect{'' if found.named else ' either'}.")
+        which = " of their own" if judged else "" if found.named else " either"
+        clauses.append(f"name no effect{which}; {FRICTION}.")
     said = [f"{'They' if k else TORQUES} {clause}" for k, clause in enumerate(clauses)]
     return [*said, *_conclusion(own, judged, found)]
 
@@ -99,11 +101,11 @@ def _of_name(o: TorqueOpinion, named: NamedEffect) -> str:
 def _own(own: Sequence[TorqueOpinion], found: Discovery) -> str:
     """Returns a clause on what torques name and the search does not."""
     first, *rest = own
-    which = f"{_called(first)}{f', {_sizes(first)}' if first.sizes else ''}"
+    which = _with_sizes(first)
     if first.standing == "forbidden":
         return f"would name {which}, but {against(first.doubt, first.chance)}; {_by(first)}."
-    alike = listed([_called(o) for o in rest if o.standing == "alike"])
-    others = "".join(f"; then {_called(o)}" for o in rest if o.standing != "alike")
+    alike = "; or ".join(_with_sizes(o) for o in rest if o.standing == "alike")
+    others = "".join(f"; then {_with_sizes(o)}" for o in rest if o.standing != "alike")
     others = f"{alike and '; within chance as good: '}{alike}{others}"
     how = "first" if first.is_first else "too"
     return f"name {_kind(first, found)} {how}: {which}; {_by(first)}{others}."
@@ -142,6 +144,10 @@ def _called(o: TorqueOpinion) -> str:
 
 def _sizes(o: TorqueOpinion) -> str:
     return ", ".join(f"{n} = {value_with_std(v, s, u)}" for n, (v, s, u) in o.sizes.items())
+
+
+def _with_sizes(o: TorqueOpinion) -> str:
+    return ", ".join(filter(None, [_called(o), _sizes(o)]))
 
 
 def _by(o: TorqueOpinion) -> str:

@@ -12,19 +12,22 @@ from identification.quantities import alike, plain, quantity
 from identification.report.page.headline import Answer, Headline, Tile, capital
 from identification.report.page.page import Section, Table
 from identification.report.page.style import GREY, INK, SIMULATED, literal, styled
-from identification.report.torques.words import (
+from identification.report.torques.tables import (
     SHOWN,
     base_rows,
+    far_frictions,
     friction_rows,
     joint_names,
     score_rows,
 )
 from identification.report.words.effects import value_with_std
+from identification.report.words.errors import listed
 from identification.torques.evidence import Evidence
 from identification.torques.fits import Fitted
 from identification.torques.laws import CURVES
 from identification.torques.scores import Score
 
+FEW = 3  # frictions in a headline; of more the count is told
 AXES = {
     "_position": "position", "_speed": "speed", "_load": "force of the drives", "_time": "time",
 }  # fmt: skip
@@ -145,6 +148,10 @@ def torque_headline(evidence: Evidence, model: mujoco.MjModel) -> Headline:
     tile = _residual(evidence, model)
     if not evidence.named:
         place = "Friction, which is always fitted, is in the table."
+        if frictions := far_frictions(evidence):
+            told = [f"{name} {value} (model {model})" for name, value, model in frictions[:FEW]]
+            told += [f"{len(frictions) - FEW} more"] if len(frictions) > FEW else []
+            place = f"apart from frictions that differ from the model: {listed(told)}"
         return Headline("", (Answer("No effect is proven", place, (tile,)),))
     first, *others = (_answer(score) for score in evidence.named)
     first = Answer(first.name, first.place, (*first.tiles, tile))

@@ -1,4 +1,4 @@
-"""What torques say of a robot, in sentences and as rows of tables."""
+"""What torques say of a robot, in sentences."""
 
 from __future__ import annotations
 
@@ -9,28 +9,29 @@ import numpy as np
 
 from identification.quantities import quantity
 from identification.report.torques.opinion_words import OTHERWISE, against
+from identification.report.torques.tables import (
+    SHOWN,
+    base_rows,
+    called,
+    centre_words,
+    chance_words,
+    far_frictions,
+    friction_rows,
+    joint_names,
+    score_rows,
+    size_words,
+)
 from identification.report.words.effects import DOUBTS
 from identification.report.words.errors import listed
-from identification.shares import decimal, fall_words, percent
+from identification.shares import fall_words, percent
 from identification.torques.evidence import Evidence
-from identification.torques.fits import Fitted
 from identification.torques.scores import CHANCE, FAR, PROOF, Score
 
-NONE = "Apart from friction, which is always fitted, the torques prove no effect"
-SHOWN = 8  # candidates that are told
 COLUMNS = "sizes; fall of the mean square on unseen data, its t, chance that luck alone does it"
 LATE = 1e-3  # shift of the clocks that is told [s]
 LARGE = 3.0  # times the noise, a residual is more than noise
 RISEN = 1.05  # factor of a residual that rises
 MATTERS = 2.0  # std that a value moves with the band: told
-
-
-def joint_names(model: mujoco.MjModel) -> tuple[list[str], list[str]]:
-    """Returns names of the joints of a model, and the units of their forces."""
-    slide = int(mujoco.mjtJoint.mjJNT_SLIDE)
-    joints = [int(j) for j in model.dof_jntid]
-    return ([model.joint(j).name for j in joints],
-            ["N" if int(model.jnt_type[j]) == slide else "N m" for j in joints])  # fmt: skip
 
 
 def torque_verdict(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
@@ -56,18 +57,6 @@ def torque_text(verdict: Sequence[str], evidence: Evidence) -> str:
     return "\n".join(lines)
 
 
-def size_words(score: Score) -> str:
-    """Returns the sizes of a candidate with their std; of a curve, how far it changes."""
-    if score.missing.is_curve:
-        return f"it changes by {quantity(score.reach, unit=score.missing.units[0])}"
-    sizes = zip(score.missing.sizes, score.size, score.std, score.missing.units, strict=True)
-    said = [f"{n.rpartition('.')[2]} = {quantity(v, s, u)}" for n, v, s, u in sizes]
-    shapes = [
-        f"{n} = {quantity(v, unit=u) if u else decimal(v, 3)}" for n, v, u in score.missing.shape
-    ]
-    return ", ".join([*said, *shapes])
-
-
 def _missing(evidence: Evidence) -> list[str]:
     on = "records" if evidence.equations.confirms.any() else "blocks of the records"
     if not evidence.scores:
@@ -75,13 +64,13 @@ def _missing(evidence: Evidence) -> list[str]:
     if not evidence.found:
         first = evidence.scores[0]
         return [
-            f"{NONE}. Of {evidence.asked} candidates the nearest is {called(first)},"
+            f"{_none(evidence)}. Of {evidence.asked} candidates the nearest is {called(first)},"
             f" {size_words(first)}: with it the mean square on {on} that no fit has seen"
             f" {fall_words(first.fall)}, t {first.t:.1f}, chance {chance_words(first.chance)}; but"
             f" {against(first.doubt or OTHERWISE, first.chance)}.",
             *_imitated(evidence),
         ]
-    out = [] if evidence.named else [f"{NONE} that physics allows."]
+    out = [] if evidence.named else [f"{_none(evidence)} that physics allows."]
     for k, score in enumerate(evidence.named):
         begins = "They also need" if k else "The torques need"
         if score.missing.is_curve:
@@ -100,8 +89,24 @@ def _missing(evidence: Evidence) -> list[str]:
                 f" are held at what was known, they do not (t {score.held_t:.1f})."
             )
         if k == 0 and (rivals := evidence.rivals[:SHOWN]):
-            out[-1] += f" Within chance as good: {listed([called(r) for r in rivals])}."
+            alike = "; ".join(f"{called(r)}, {size_words(r)}" for r in rivals)
+            out[-1] += f" Within chance as good: {alike}."
     return [*out, *_tried(evidence)]
+
+
+def _none(evidence: Evidence) -> str:
+    """Returns that torques prove no effect, apart from the values that later sentences tell."""
+    told = []
+    if frictions := far_frictions(evidence):
+        names = listed([name for name, *_ in frictions])
+        told.append(f"frictions that differ from the model ({names})")
+    if far := _far_values(evidence):
+        names = listed([evidence.final.names[i] for i in far])
+        told.append(f"values that are far from what was known of them ({names})")
+    if _proven_differences(evidence):
+        told.append("a load by which the records differ")
+    rest = f"{listed(told)}, told below" if told else "friction, which is always fitted"
+    return f"Apart from {rest}, the torques prove no effect"
 
 
 def _tried(evidence: Evidence) -> list[str]:
@@ -117,25 +122,6 @@ def _tried(evidence: Evidence) -> list[str]:
     return out
 
 
-def called(score: Score) -> str:
-    """Returns the name of a candidate, its place, and what it is, in words."""
-    what = f" ({score.missing.phrase})" if score.missing.phrase else ""
-    return f"{score.missing.title.replace('_', ' ', 2)}{what}"
-
-
-def centre_words(score: Score) -> str:
-    """Returns a sentence on where a load is; "" of what is no load, or where m is not sure."""
-    sizes = dict(zip(score.missing.sizes, zip(score.size, score.std, strict=True), strict=True))
-    m, σ_m = sizes.get("m", (0.0, 1.0))
-    if score.missing.name != "load" or abs(m) <= FAR * σ_m:
-        return ""
-    at = [  # the std leaves out how m and h go together
-        f"{n[2:]} = {quantity(h / m, float(np.hypot(σ, h / m * σ_m) / m), 'm')}"
-        for n, (h, σ) in sizes.items() if n.startswith("h_")
-    ]  # fmt: skip
-    return f" Its centre of mass is at {listed(at)} in the frame of {score.missing.where}."
-
-
 def _imitated(evidence: Evidence) -> list[str]:
     """Returns a sentence on a candidate that only what was known of free parameters speaks for."""
     likely = [s for s in evidence.scores if s.chance < CHANCE and s.is_plausible]
@@ -147,11 +133,6 @@ def _imitated(evidence: Evidence) -> list[str]:
         f" ({size_words(best)}; chance {chance_words(best.chance)}). But these parameters imitate"
         " it on unseen data: free fewer of them, or record a motion with larger accelerations."
     ]
-
-
-def chance_words(chance: float) -> str:
-    """Returns the chance that the best of all candidates explains as much by luck."""
-    return percent(chance) if chance >= 0.01 else "below 1 %"
 
 
 def _residual(evidence: Evidence, model: mujoco.MjModel) -> list[str]:
@@ -207,8 +188,7 @@ def _left(evidence: Evidence, names: Sequence[str]) -> list[str]:
 
 
 def _friction(evidence: Evidence) -> list[str]:
-    off = [(n, v, m) for n, v, m, d in friction_rows(evidence) if abs(float(d)) > FAR]
-    if not off:
+    if not (off := far_frictions(evidence)):
         return []
     said = listed([f"{name} {value} (model {model})" for name, value, model in off])
     return [f"Frictions that differ from the model: {said}."]
@@ -220,18 +200,27 @@ def _far(evidence: Evidence) -> list[str]:
         f"{final.names[i]} = {quantity(final.fit.θ[i], final.fit.std[i], final.units[i])} is"
         f" {off[i]:.0f} std from what was known of it: it may stand for something that the model"
         " lacks."
-        for i in range(final.inertial)
-        if off[i] > FAR
+        for i in _far_values(evidence)
     ]
+
+
+def _far_values(evidence: Evidence) -> list[int]:
+    """Returns the places of free values that are far from what was known of them."""
+    final = evidence.final
+    return [i for i in range(final.inertial) if abs(final.base.far[i]) > FAR]
 
 
 def _differences(evidence: Evidence) -> list[str]:
     return [
         f"The records differ by a load: {score.missing.title}, {size_words(score)}, with all"
         f" inertial numbers free (t {score.t:.1f}, chance {chance_words(score.chance)})."
-        for score in evidence.differences[:1]
-        if score.is_proven
+        for score in _proven_differences(evidence)
     ]
+
+
+def _proven_differences(evidence: Evidence) -> list[Score]:
+    """Returns the likeliest load of a single record, if it is proven."""
+    return [score for score in evidence.differences[:1] if score.is_proven]
 
 
 def _doubts(evidence: Evidence) -> list[str]:
@@ -278,35 +267,3 @@ def _late(evidence: Evidence) -> list[str]:
     if not said:
         return []
     return [f"The inputs act {listed(said)} than their stamps say; the fits correct this."]
-
-
-def base_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
-    """Returns rows of base parameters: name, value with std, the model's, the difference in std."""
-    return _rows(evidence.whole, 0, evidence.base.values)
-
-
-def friction_rows(evidence: Evidence) -> list[tuple[str, str, str, str]]:
-    """Returns rows of frictions: name, value with std, the model's, the difference in std."""
-    return _rows(evidence.final, evidence.final.inertial, evidence.friction)
-
-
-def _rows(fit: Fitted, first: int, models: np.ndarray) -> list[tuple[str, str, str, str]]:
-    """Returns rows of the sizes of a fit from the first one on, beside those of the model."""
-    rows = []
-    for k, model in enumerate(models, first):
-        value, std, unit = fit.fit.θ[k], fit.fit.std[k], fit.units[k]
-        off = (value - model) / std if std > 0 else np.nan
-        # the model's value has the prefix of the fitted value beside it
-        own = quantity(model, unit=unit, like=max(abs(value), std))
-        told = quantity(value, std, unit, like=model)
-        rows.append((fit.names[k], told, own, f"{off:+z.1f}"))
-    return rows
-
-
-def score_rows(scores: tuple[Score, ...]) -> list[tuple[str, str, str, str, str]]:
-    """Returns rows of candidates: title, sizes, fall on unseen blocks, its t, chance."""
-    return [
-        (called(s), size_words(s), percent(s.fall), f"{s.t:.1f}",
-         chance_words(s.chance))
-        for s in [s for s in scores if s.is_plausible][:SHOWN]
-    ]  # fmt: skip

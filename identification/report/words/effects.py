@@ -12,7 +12,13 @@ from identification.report.words.values import in_record, phrase, without_colon
 from identification.shares import fall_words, percent
 
 if TYPE_CHECKING:  # a search is slow to import, and a page may tell of a model alone
-    from identification.discovery.effect_results import NamedEffect, Outside, Proof, RejectedEffect
+    from identification.discovery.effect_results import (
+        NamedEffect,
+        Outside,
+        Proof,
+        RejectedEffect,
+        Rival,
+    )
     from identification.discovery.options import DiscoveryOptions
     from identification.discovery.result import Discovery
     from identification.effects.effect import Candidate, Effect
@@ -91,14 +97,17 @@ def number(effect: Effect, name: str, value: float, std: float, unit: str) -> st
     return value_with_std(value, std, unit, like=float(is_power))
 
 
-def describe_sizes(found: NamedEffect | RejectedEffect, plant: Plant | None = None) -> str:
+def describe_sizes(found: NamedEffect | RejectedEffect | Rival, plant: Plant | None = None) -> str:
     """Returns sizes and shapes of a fitted effect with std, but no shape that no data tell.
 
     Where a size is added to a number that the plant's model has, it says that number too. Of a
-    curve, whose numbers are a figure, it returns the largest force of its nodes.
+    curve, whose numbers are a figure, it returns the largest force of its nodes. It returns "" of a
+    rival whose numbers are not known.
     """
     effect, shown = found.candidate.effect, shown_parameters(found)
-    if effect.is_curve and shown:
+    if not shown:
+        return ""
+    if effect.is_curve:
         value, std, unit = shown[largest_known(shown)]
         return f"up to {quantity(abs(value), std, unit)} at one of its {len(effect.sizes)} nodes"
     about = effect.about
@@ -130,7 +139,9 @@ def _already(candidate: Candidate, plant: Plant) -> str:
     return quantity(value, unit=size.unit) if value else ""
 
 
-def shown_parameters(found: NamedEffect | RejectedEffect) -> dict[str, tuple[float, float, str]]:
+def shown_parameters(
+    found: NamedEffect | RejectedEffect | Rival,
+) -> dict[str, tuple[float, float, str]]:
     """Returns the sizes and shapes of a fitted effect that tell something of the robot.
 
     Shapes that no data tell, and those of one log alone, are left out.

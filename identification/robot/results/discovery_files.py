@@ -18,7 +18,12 @@ from identification.report.discovery.straight_curves import force_ranges
 from identification.report.page.page import Section
 from identification.robot.reading import doubtful
 from identification.robot.results.mjcf import write_mjcf
-from identification.robot.results.record_error import Repetition, find_repetitions
+from identification.robot.results.record_error import (
+    Repetition,
+    Rest,
+    find_repetitions,
+    find_rests,
+)
 from identification.robot.results.unexplained import Unexplained, find_unexplained
 from identification.robot.results.write import write_robot
 from identification.robot.robot import Robot
@@ -44,13 +49,13 @@ class RobotDiscoveryFiles(DiscoveryFiles):
     def record(self) -> dict[str, Any]:
         """The discovery as plain values, with what the robot's records say."""
         record = discovery_to_json(self.found)
-        repeated = self._repeated
+        weak: tuple[Rest | Repetition, ...] = (*find_rests(self.robot), *self._repeated)
         return record | {
-            "located": [*record["located"], *map(str, self._unexplained), *map(str, repeated)],
+            "located": [*record["located"], *map(str, self._unexplained), *map(str, weak)],
             "findings": [
                 *record["findings"],
                 *(u.finding for u in self._unexplained),
-                *(r.finding for r in repeated),
+                *(r.finding for r in weak),
             ],
             "remarks": list(self.robot.remarks),
         }

@@ -42,7 +42,10 @@ from identification.robot.results.record_error import (
     AS_WRITTEN,
     FITTED,
     Confirmation,
+    Repetition,
+    Rest,
     find_repetitions,
+    find_rests,
 )
 from identification.robot.results.results import RobotFit, TorqueFit
 from identification.robot.results.unexplained import find_unexplained
@@ -61,9 +64,9 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     """Returns the numbers and the verdict of a fit; unknown and infinite numbers are null."""
     found = result.found
     record = {"horizon": None, "worse": None, **fit_to_json(found)}
-    repeated = find_repetitions(result.robot)
+    weak: list[Rest | Repetition] = [*find_rests(result.robot), *find_repetitions(result.robot)]
     unexplained = () if result.stopped else find_unexplained(result.robot, result)
-    said = (*(confirmed or result.unseen), *repeated)
+    said = (*(confirmed or result.unseen), *weak)
     far = _far(record["parameters"])
     # Then nothing else of the verdict matters as much.
     first = int(result.is_worse or result.stopped)
@@ -77,7 +80,7 @@ def robot_fit_to_json(result: RobotFit, confirmed: Sequence[Confirmation] = ()) 
     verdict = [*record["verdict"][:first], *far, *record["verdict"][first:], *map(str, said)]
     return {
         **record, "confirm": plain(tuple(confirmed)), "verdict": verdict,
-        "findings": [*(u.finding for u in unexplained), *(r.finding for r in repeated)],
+        "findings": [*(u.finding for u in unexplained), *(r.finding for r in weak)],
         "remarks": list(result.robot.remarks),
     }  # fmt: skip
 

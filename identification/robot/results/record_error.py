@@ -1,8 +1,8 @@
-"""The errors of two models on an unseen record, and whether it only repeats what was fitted.
+"""The errors of two models on an unseen record, and whether it proves anything.
 
 Unseen data judge a model only where a replay of the fitted data (`identification.logs.joined`)
 fails. A sine, or a motion that is repeated period by period, confirms a model that is wrong
-elsewhere as well as a right one.
+elsewhere as well as a right one. So does a robot at rest (`identification.logs.rest`).
 """
 
 from __future__ import annotations
@@ -12,8 +12,11 @@ from dataclasses import dataclass, field
 
 from identification.discovery.effect_results import RecordError
 from identification.logs.joined import REPLAYED, replayed_share
+from identification.logs.log import Log
+from identification.logs.rest import RESTING, is_at_rest, motion_share
 from identification.quantities import alike
 from identification.report.words.errors import error_words, kind, listed
+from identification.report.words.rest import rest_sentences
 from identification.robot.robot import Robot
 from identification.shares import change, percent
 
@@ -90,12 +93,44 @@ class Repetition:
         return {"kind": "repeated motion", "log": self.log, "share": self.share}
 
 
+@dataclass(frozen=True)
+class Rest:
+    """A part of a log, or a record, in which the robot hardly moves."""
+
+    log: str  # name of the part or of the record
+    share: float  # of the motion of what was fitted, without unit
+
+    def __str__(self) -> str:
+        return " ".join(rest_sentences([self.log]))
+
+    @property
+    def finding(self) -> dict[str, str | float]:
+        """It as a finding of JSON."""
+        return {"kind": "record at rest", "log": self.log, "share": self.share}
+
+
 def find_repetitions(robot: Robot) -> tuple[Repetition, ...]:
-    """Returns the confirming parts and records of a robot that repeat what is fitted."""
+    """Returns the confirming parts and records of a robot that repeat what is fitted.
+
+    Those in which it hardly moves are left out: any rest in what was fitted replays them.
+    """
+    pieces, unseen = _fitted_and_unseen(robot)
+    moving = (log for log in unseen if not is_at_rest(pieces, log))
+    shares = ((log.name, replayed_share(pieces, log)) for log in moving)
+    return tuple(Repetition(name, share) for name, share in shares if share > REPLAYED)
+
+
+def find_rests(robot: Robot) -> tuple[Rest, ...]:
+    """Returns the confirming parts and records of a robot in which it hardly moves."""
+    pieces, unseen = _fitted_and_unseen(robot)
+    shares = ((log.name, motion_share(pieces, log)) for log in unseen)
+    return tuple(Rest(name, share) for name, share in shares if share < RESTING)
+
+
+def _fitted_and_unseen(robot: Robot) -> tuple[list[Log], list[Log]]:
     fitted = [log.part("estimation") for log in (robot.log, *robot.others)]
     many = bool(robot.others) or robot.file.horizon is not None
     whole = many and bool(robot.records)  # then each log is fitted from end to end
     unseen = [] if whole else [log.part("validation") for log in (robot.log, *robot.others)]
     pieces = [robot.log, *robot.others] if whole else fitted
-    shares = ((log.name, replayed_share(pieces, log)) for log in (*unseen, *robot.records))
-    return tuple(Repetition(name, share) for name, share in shares if share > REPLAYED)
+    return pieces, [*unseen, *robot.records]

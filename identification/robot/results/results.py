@@ -11,7 +11,7 @@ from identification.logs.log import Log
 from identification.model.rollout import State
 from identification.prediction.records_fit import RecordsFit
 from identification.quantities import quantity
-from identification.report.torques.words import size_words
+from identification.report.torques.tables import size_words
 from identification.robot.results.record_error import AS_WRITTEN, FITTED, Confirmation, of_record
 from identification.robot.robot import Robot
 from identification.storage.written import Files, Written

@@ -6,11 +6,11 @@
 τ_inv is MuJoCo's inverse dynamics of the model (`mj_inverse`), so that its springs, tendons and
 whatever else it has stay known; τ_u is what its actuators make of the logged inputs. τ_u and the
 signs of the rates go through the filter that makes the motion smooth, as the accelerations do:
-where a joint turns, friction and accelerations jump together. A clock that is off moves the inputs
-alone, and not the positions that a servo compares them with (`Rows.shifted`). Both sides are then
-means over short times, a weak form of the equation with boxes as test functions. A joint that is
-nearly at rest has no equation, because friction may then be any force below its level; nor has one
-that turns, where the filter mixes both directions.
+where a joint reverses, friction and accelerations jump together. A clock that is off moves the
+inputs alone, and not the positions that a servo compares them with (`Rows.shifted`). Both sides are
+then means over short times, a weak form of the equation with boxes as test functions. A joint that
+is nearly at rest has no equation, because friction may then be any force below its level; nor has
+one that reverses its direction, where the filter mixes both directions.
 """
 
 from __future__ import annotations
@@ -136,8 +136,10 @@ def make_rows(
     rows = tuple(_rows(m, known, log, q, motion, top, least) for m, log, q, motion in each)
     if not any(r.used.any() for r in rows):
         raise InputError(
-            "no joint moves for longer than its filter needs between two turns; give logs of a"
-            " slower motion, or sampled faster"
+            "no joint moves long enough in one direction: between two reversals of its direction"
+            " its rate must stay above the noise for longer than the low-pass filter of positions"
+            f" (cutoff {max(r.band for r in rows):.3g} Hz) mixes both directions; give logs whose"
+            " motion reverses less often, that are sampled faster or that have less noise"
         )
     return rows
 
