@@ -39,7 +39,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "impossible_sizes": (ALL, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
     "exchange_effects": (
-        RUN, "puts a rival in the place of an effect, where the model with it is better",
+        BOTH, "puts another law in the place of an effect, where the model with it is better",
     ),
     "other_kinds": (
         RUN, "exchanges the kind of an accepted effect once another effect is beside it",
@@ -77,6 +77,9 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "exchange_roles": (
         HORIZON, "asks whether an effect holds where fitted and unseen records change places",
+    ),
+    "numbers_of_roles": (
+        HORIZON, "lets records contradict an effect only where its numbers differ between roles",
     ),
     "losing_blocks": (
         HORIZON, "lets a record contradict an effect only where its blocks lose on average too",

@@ -12,6 +12,7 @@ proven    each beside the others, and all together; the weakest that is not is l
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +24,7 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.fits.model import WindowModel
 from identification.prediction.judging.extension import refitted, weighed, with_effect
-from identification.prediction.judging.trial import compared, find_doubt
+from identification.prediction.judging.trial import Contender, compared, find_doubt
 from identification.prediction.scoring.contenders import list_starts
 from identification.prediction.scoring.first_fit import begin
 from identification.prediction.scoring.scores import window_scores
@@ -47,8 +48,7 @@ MAX_ROUNDS = 2  # of a choice, and of asking each of its members in its place
 def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
     """Returns the state with several effects more, or as it is where none are proven together.
 
-    A set that predicts worse is left before its members are asked in their places, which takes most
-    of the time.
+    Where a set predicts worse, what is left when its unproven members are out takes its place.
 
     Args:
         state: the state before.
@@ -60,11 +60,14 @@ def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
     model, places, refits, asked = state.model, dict[Key, Place](), 0, list[set[Key]]()
     for _ in range(MAX_ROUNDS):
         chosen = _with_set(state, model, progress)
-        if _keys(chosen) in asked or _is_worse(chosen, state.model, task.options):
+        if _keys(chosen) in asked:
             break
         asked.append(_keys(chosen))
-        if not proven_members(state, chosen, refits, progress):
+        proven = proven_members(state, chosen, refits, progress)
+        if not proven:
             break
+        if _is_worse(chosen, state.model, task.options):  # a member that is wrong spoils it
+            chosen = proven[0].model
         model, places = each_at_its_best(state, chosen, progress)
         refits += sum(len(p.tried) for p in places.values())
         if _keys(model) in asked:
@@ -72,9 +75,23 @@ def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
         asked.append(_keys(model))
     found = proven_members(state, model, refits, progress) if places else ()
     watch.stop("refits")
-    if not found:
-        return replace(state, seconds=watch.seconds)
+    state = replace(state, seconds=watch.seconds)
+    return with_members(state, found, places) if found else state
+
+
+def with_members(
+    state: WindowSearch, found: Sequence[Contender], places: Mapping[Key, Place]
+) -> WindowSearch:
+    """Returns the state with the members of a set, all candidates scored beside them.
+
+    Args:
+        state: without them.
+        found: the members, each beside the others.
+        places: what was tried in the place of each.
+    """
+    task, watch = state.task, Watch(state.seconds)
     model = weighed(found[0].model, task.horizon, task.confirm, task.options)
+    watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
     watch.stop("scores")
     named = {c.candidate.key for c in found}

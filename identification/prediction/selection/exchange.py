@@ -5,6 +5,12 @@ with one choice is contradicted where, with the roles of the records exchanged, 
 average, or one of the records. It need not be proven once more: the records that confirm may be few
 and tell little. A curve of the data is not asked: a record tells only the nodes that it reaches.
 
+    |s - s'| > z √(σ² + σ'²)        s, s': a number of an effect in both roles; σ, σ': their std
+
+Records that tell little of a size predict worse with it, too: a robot that hardly moved tells the
+spring that hardens at the end of its way so badly that it spoils long ways. So records contradict
+an effect only where a number of it differs between the roles by more than its std allow.
+
 Where records that confirm are too few to prove the likeliest law, which misses chance alone, both
 roles prove it together: the blocks of all records are then the sample, each predicted by a fit that
 has not seen it (cross-fitting; Chernozhukov and others 2018).
@@ -16,10 +22,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import norm
 
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
+from identification.effects.effect import Candidate
 from identification.prediction.fits.crossing import at_their_best
 from identification.prediction.fits.model import WindowModel, predict_fitted
 from identification.prediction.judging.judging import doubt_of_size
@@ -30,7 +38,11 @@ from identification.prediction.judging.trial import (
     find_doubt,
     luck_of,
 )
-from identification.prediction.scoring.first_fit import MAX_LINEARISATIONS, REFIT_TOLERANCE
+from identification.prediction.scoring.first_fit import (
+    MAX_LINEARISATIONS,
+    REFIT_TOLERANCE,
+    shapes_of,
+)
 from identification.prediction.selection.selection import ranked
 from identification.runtime.progress import Progress
 from identification.windows.comparison import joined
@@ -65,7 +77,7 @@ def without_contradicted(
         parent = without
         if uses(options, "states_of_others"):
             parent, (with_it,) = at_their_best(without, [with_it], horizon, unseen)
-        if not is_contradicted(parent, with_it, options):
+        if not is_contradicted(parent, with_it, rest[0].model, options):
             return (*rest, *contradicted), with_it
         c = rest[0].candidate
         progress(f"{c.effect.name}, {c.where}: contradicted where the records exchange their roles")
@@ -150,16 +162,50 @@ def exchanged(model: WindowModel, records: Sequence[Record], horizon: float) -> 
     return attempt(None, evaluate)
 
 
-def is_contradicted(without: WindowModel, with_it: WindowModel, options: DiscoveryOptions) -> bool:
-    """Returns whether an effect predicts worse on average, or one record by enough to matter.
+def is_contradicted(
+    without: WindowModel, with_it: WindowModel, model: WindowModel, options: DiscoveryOptions
+) -> bool:
+    """Returns whether records contradict effects: prediction is worse, and their numbers differ.
+
+    Worse is a prediction on average, or of one record by enough to matter.
 
     Args:
-        without: the model without it, with the roles of the records exchanged.
-        with_it: the model with it, likewise.
-        options: what matters.
+        without: the model without them, with the roles of the records exchanged.
+        with_it: the model with them, likewise.
+        model: with them, and with the roles as they are.
+        options: what matters, and what is beyond chance.
     """
     found = compared(without.unseen, with_it.unseen, options)
-    return found.gain <= 0 or contradicts_a_record(found, options)
+    if found.gain > 0 and not contradicts_a_record(found, options):
+        return False
+    known = {c.key for c in without.candidates}
+    new = [c for c in with_it.candidates if c.key not in known]
+    is_asked = uses(options, "numbers_of_roles")
+    return not is_asked or _differ(model, with_it, new, options.significance)
+
+
+def _differ(
+    model: WindowModel, other: WindowModel, effects: Sequence[Candidate], level: float
+) -> bool:
+    """Returns whether a number of effects differs between two fits beyond chance.
+
+    One that ends on a bound, or without a std, differs from any.
+
+    Args:
+        model: a fit with the effects.
+        other: one to other data.
+        effects: that both have.
+        level: of chance, for all numbers together.
+    """
+    shared = {*model.fit.problem.names, *other.fit.problem.names}
+    names = [n for c in effects for n in (*c.free, *shapes_of(c)) if n in shared]
+    at_bound = {*model.at_bound, *other.at_bound}
+    if not names or not {*names} <= {*model.std} & {*other.std} - at_bound:
+        return True
+    z = norm.isf(level / 2 / len(names))
+    apart = [abs(model.fit.values[n] - other.fit.values[n]) for n in names]
+    std = [float(np.hypot(model.std[n], other.std[n])) for n in names]
+    return not all(d <= z * s for d, s in zip(apart, std, strict=True))
 
 
 def _begin(task: Problem, model: WindowModel) -> np.ndarray:

@@ -110,4 +110,4 @@ def _is_contradicted(state: WindowSearch, parent: WindowModel, whole: WindowMode
     without, with_it = (exchanged(m, task.records, task.horizon) for m in (parent, whole))
     if without is None or with_it is None:
         return False
-    return is_contradicted(without, with_it, task.options)
+    return is_contradicted(without, with_it, whole, task.options)
