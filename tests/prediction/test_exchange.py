@@ -84,7 +84,7 @@ def test_a_law_of_all_records_is_the_same_from_both_sides():
     _, _, with_it = pair("has it")
     without, other = other_side("has it")
     assert other.values[MU] == pytest.approx(with_it.values[MU], abs=4 * with_it.std[MU])
-    assert not is_contradicted(without, other, OPTIONS)
+    assert not is_contradicted(without, other, with_it, OPTIONS)
 
 
 def test_a_curve_is_not_asked_because_a_record_tells_only_the_nodes_that_it_reaches():
@@ -161,7 +161,7 @@ def test_a_proven_law_that_is_likelier_leaves_nothing_to_ask():
 def test_a_law_that_one_fitted_record_lacks_is_proven_and_then_contradicted():
     _, without, with_it = pair("lacks it")
     assert find_doubt(compare(without.unseen, with_it.unseen), 1, OPTIONS) is None
-    assert is_contradicted(*other_side("lacks it"), OPTIONS)
+    assert is_contradicted(*other_side("lacks it"), with_it, OPTIONS)
 
 
 @pytest.mark.long

@@ -9,7 +9,8 @@ and tell little. A curve of the data is not asked: a record tells only the nodes
 
 Records that tell little of a size predict worse with it, too: a robot that hardly moved tells the
 spring that hardens at the end of its way so badly that it spoils long ways. So records contradict
-an effect only where a number of it differs between the roles by more than its std allow.
+an effect only where a number of it differs between the roles by more than its std allow. These are
+those of readings that err alike: by how blocks scatter, the contradiction itself would be scatter.
 
 Where records that confirm are too few to prove the likeliest law, which misses chance alone, both
 roles prove it together: the blocks of all records are then the sample, each predicted by a fit that
@@ -189,7 +190,7 @@ def _differ(
 ) -> bool:
     """Returns whether a number of effects differs between two fits beyond chance.
 
-    One that ends on a bound, or without a std, differs from any.
+    One that ends on a bound, or that a fit does not feel, differs from any.
 
     Args:
         model: a fit with the effects.
@@ -197,15 +198,27 @@ def _differ(
         effects: that both have.
         level: of chance, for all numbers together.
     """
-    shared = {*model.fit.problem.names, *other.fit.problem.names}
-    names = [n for c in effects for n in (*c.free, *shapes_of(c)) if n in shared]
+    each = [_std_of_readings(m) for m in (model, other)]
     at_bound = {*model.at_bound, *other.at_bound}
-    if not names or not {*names} <= {*model.std} & {*other.std} - at_bound:
+    shared = {*each[0], *each[1]}
+    names = [n for c in effects for n in (*c.free, *shapes_of(c)) if n in shared]
+    if not names or at_bound & {*names} or any(n not in std for n in names for std in each):
         return True
     z = norm.isf(level / 2 / len(names))
     apart = [abs(model.fit.values[n] - other.fit.values[n]) for n in names]
-    std = [float(np.hypot(model.std[n], other.std[n])) for n in names]
-    return not all(d <= z * s for d, s in zip(apart, std, strict=True))
+    std = [float(np.hypot(each[0][n], each[1][n])) for n in names]
+    return any(d > z * s for d, s in zip(apart, std, strict=True))
+
+
+def _std_of_readings(model: WindowModel) -> dict[str, float]:
+    """Returns the std of each free value that is felt, if all readings err alike, in its unit."""
+    fit = model.fit
+    scale = 1 / np.diag(fit.problem.parts[0].whitener)
+    power = np.mean(np.concatenate([np.ravel((e / scale) ** 2) for e in fit.errors]))
+    free = np.diag(np.linalg.pinv(fit.curvature, hermitian=True))
+    std = np.sqrt(power * free) * np.abs(fit.problem.prior.space.slope(fit.q))
+    each = zip(fit.problem.names, std, fit.std, strict=True)
+    return {n: float(s) for n, s, by_blocks in each if np.isfinite(by_blocks)}
 
 
 def _begin(task: Problem, model: WindowModel) -> np.ndarray:
