@@ -215,8 +215,10 @@ def _std_of_readings(model: WindowModel) -> dict[str, float]:
     fit = model.fit
     scale = 1 / np.diag(fit.problem.parts[0].whitener)
     power = np.mean(np.concatenate([np.ravel((e / scale) ** 2) for e in fit.errors]))
-    free = np.diag(np.linalg.pinv(fit.curvature, hermitian=True))
-    std = np.sqrt(power * free) * np.abs(fit.problem.prior.space.slope(fit.q))
+    inverse = np.linalg.pinv(fit.curvature, hermitian=True)
+    known = power * fit.information + np.diag(fit.problem.prior.weight**2)
+    free = np.diag(inverse @ known @ inverse)
+    std = np.sqrt(free) * np.abs(fit.problem.prior.space.slope(fit.q))
     each = zip(fit.problem.names, std, fit.std, strict=True)
     return {n: float(s) for n, s, by_blocks in each if np.isfinite(by_blocks)}
 
