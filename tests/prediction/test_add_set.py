@@ -74,6 +74,31 @@ def test_members_of_a_set_with_which_unseen_records_are_predicted_no_better_are_
     assert add_set.add_set(state, lambda line: None).accepted == ()
 
 
+@pytest.mark.parametrize("is_worse", [True, False])
+def test_a_set_that_predicts_worse_is_asked_without_the_members_that_spoil_it(
+    monkeypatch, is_worse
+):
+    chosen, less = (SimpleNamespace(candidates=()) for _ in range(2))
+    state = SimpleNamespace(
+        task=SimpleNamespace(options=DiscoveryOptions()), model=None, room=3, scores=[1],
+        seconds={},
+    )  # fmt: skip
+    asked = []
+
+    def at_its_best(state, model, progress):
+        asked.append(model)
+        raise LookupError
+
+    monkeypatch.setattr(add_set, "is_much_left", lambda model, options: True)
+    monkeypatch.setattr(add_set, "_with_set", lambda *given: chosen)
+    monkeypatch.setattr(add_set, "_is_worse", lambda *given: is_worse)
+    monkeypatch.setattr(add_set, "proven_members", lambda *given: [SimpleNamespace(model=less)])
+    monkeypatch.setattr(add_set, "each_at_its_best", at_its_best)
+    with pytest.raises(LookupError):
+        add_set.add_set(state, print)
+    assert asked[0] is (less if is_worse else chosen)
+
+
 @pytest.mark.parametrize(
     ("without", "names"), [((), {"offset"}), (("plain_sets",), {"offset", "presliding"})]
 )

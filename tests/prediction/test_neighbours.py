@@ -120,6 +120,8 @@ def test_what_a_curve_of_the_model_explains_counts_as_what_is_beside_a_law():
     ("coulomb_friction", "curve_position", False),  # another force that is missing
     ("hardening", "curve_position", True),
     ("offset", "curve_position", True),  # any curve may draw a constant
+    ("delay", "curve_speed", True),
+    ("delay", "curve_position", False),  # an input that is late is no force of the position
 ])  # fmt: skip
 def test_a_curve_of_the_model_counts_where_it_may_draw_what_the_law_misses(law, curve, counts):
     known = {e.name: e for e in candidates(pendulum(), FREE)}
