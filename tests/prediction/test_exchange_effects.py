@@ -33,23 +33,31 @@ def effect(name):
     return SimpleNamespace(candidate=c, name=name)
 
 
-def with_effects(monkeypatch, names=LAWS, left=True, doubtful=()):
+def replace_model(effect, leaves_much):
+    effect.model = SimpleNamespace(leaves_much=leaves_much)
+    return effect
+
+
+def with_effects(monkeypatch, names=LAWS, left=False, doubtful=("stiffness",)):
     """A state with some effects, of which much is left, or some are in doubt."""
     model = SimpleNamespace(candidates=[effect(n).candidate for n in LAWS])
-    monkeypatch.setattr(move, "is_much_left", lambda model, options: left)
+    monkeypatch.setattr(
+        move, "is_much_left", lambda model, options: left or getattr(model, "leaves_much", False)
+    )
     monkeypatch.setattr(move, "sure_and_doubtful", lambda state: ([], doubtful))
     return replace(begun(), model=model, accepted=tuple(effect(n) for n in names))
 
 
-def exchanged_for(monkeypatch, state, names, proven=None):
+def exchanged_for(monkeypatch, state, names, proven=None, leaves_much=False):
     """The state after other effects were found in the places."""
+    found = [replace_model(effect(n), leaves_much) for n in (names if proven is None else proven)]
     model = SimpleNamespace(candidates=[effect(n).candidate for n in names])
     places = {("offset", "joint hinge"): SimpleNamespace(tried=(1, 2))}
     asked = []
 
     def proven_members(before, model, refits, progress):
         asked.append((before, refits))
-        return [effect(n) for n in (names if proven is None else proven)]
+        return found
 
     monkeypatch.setattr(move, "each_at_its_best", lambda *given: (model, places))
     monkeypatch.setattr(move, "proven_members", proven_members)
@@ -66,13 +74,14 @@ def test_the_better_law_takes_the_place_and_chance_pays_for_all_refits(monkeypat
     assert (before.model, before.accepted, refits) == (state.nominal, (), 2)
 
 
-@pytest.mark.parametrize(("names", "proven"), [
-    (LAWS, None),  # the same as before
-    (("offset", "hardening"), ("offset",)),  # unseen records do not prove all of them
+@pytest.mark.parametrize(("names", "proven", "leaves_much"), [
+    (LAWS, None, False),  # the same as before
+    (("offset", "hardening"), ("offset",), False),  # unseen records do not prove all of them
+    (("offset", "hardening"), None, True),  # no better than what was there
 ])  # fmt: skip
-def test_effects_stay_where_no_others_are_proven(monkeypatch, names, proven):
+def test_effects_stay_where_no_others_are_proven(monkeypatch, names, proven, leaves_much):
     state = with_effects(monkeypatch)
-    found, _ = exchanged_for(monkeypatch, state, names, proven)
+    found, _ = exchanged_for(monkeypatch, state, names, proven, leaves_much)
     assert found.accepted is state.accepted
     assert found.model is state.model
 

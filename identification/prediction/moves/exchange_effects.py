@@ -4,7 +4,8 @@ An effect is accepted beside those that were found before it, and what is found 
 its place needs: a Stribeck peak that was found beside cogging is Coulomb friction once a friction
 that grows with the square of speed is there too. So where a name is in doubt, or much is left, each
 effect is taken out, all laws are scored and the best refitted in its place. The new effects are
-taken where unseen records prove all of them, each beside the others and all together.
+taken where unseen records prove all of them, each beside the others and all together, and where
+they leave little: a law that is near what is missing is then no better than the one before it.
 """
 
 from __future__ import annotations
@@ -43,6 +44,6 @@ def exchange_effects(state: WindowSearch, progress: Progress) -> WindowSearch:
     refits = sum(len(p.tried) for p in places.values())
     found = proven_members(before, model, refits, progress) if is_new else ()
     watch.stop("refits")
-    if len(found) < len(laws):
+    if len(found) < len(laws) or is_much_left(found[0].model, state.task.options):
         return replace(state, seconds=watch.seconds)
     return with_members(replace(before, seconds=watch.seconds), found, places)
