@@ -63,8 +63,11 @@ def mean_above_zero(x: np.ndarray) -> tuple[float, float]:
         x: shape (n,).
 
     Returns:
-        t, and the chance of as large a one where the mean is zero; NaN where all are zero.
+        t, and the chance of as large a one where the mean is zero; NaN where all are zero, and of
+        one number, whose scatter is not known.
     """
+    if len(x) < 2:
+        return np.nan, np.nan
     with np.errstate(divide="ignore", invalid="ignore"):
         t = float(x.mean() / np.sqrt(x.var(ddof=1) / len(x)))
     return t, student_above(t, len(x) - 1)
@@ -81,7 +84,8 @@ def stratified_mean_above_zero(strata: Sequence[np.ndarray]) -> tuple[float, flo
         strata: numbers of each, shape (n_r,).
 
     Returns:
-        t, and the chance of as large a one where the mean is zero; NaN where nothing scatters.
+        t, and the chance of as large a one where the mean is zero; NaN where nothing scatters, and
+        of one number.
     """
     large = [x for x in strata if len(x) >= LEAST_OF_STRATUM]
     small = [x for x in strata if len(x) < LEAST_OF_STRATUM]
@@ -91,6 +95,8 @@ def stratified_mean_above_zero(strata: Sequence[np.ndarray]) -> tuple[float, flo
             large.sort(key=len)
             rest = np.concatenate([rest, large.pop(0)])
         large.append(rest)
+    if len(large) == 1:
+        return mean_above_zero(large[0])
     n = sum(map(len, large))
     each = np.array([len(x) * x.var(ddof=1) for x in large]) / n**2
     with np.errstate(divide="ignore", invalid="ignore"):

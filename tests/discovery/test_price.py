@@ -141,6 +141,11 @@ def unlike_records(rng):
     return [mean + scatter * rng.standard_normal(6) for mean, scatter in records]
 
 
+def test_one_number_tells_nothing_and_warns_of_nothing():
+    assert np.isnan(mean_above_zero(np.array([1.0]))).all()
+    assert np.isnan(stratified_mean_above_zero([np.array([1.0])])).all()
+
+
 def test_unlike_records_prove_by_luck_as_seldom_as_the_test_says():
     rng, level = np.random.default_rng(0), 0.01
     found = sum(stratified_mean_above_zero(unlike_records(rng))[1] < level for _ in range(DRAWS))
