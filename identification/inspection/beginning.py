@@ -17,7 +17,7 @@ from identification.inspection.inspected import SAID, Inspection, answers_of
 from identification.inspection.matching import BY_PLACE, SAME, match
 from identification.inspection.needs import limits_of, needs_of, unanswered
 from identification.inspection.words import answer_sentences
-from identification.logs.column_words import Role, unit_by_words
+from identification.logs.headers.column_words import Role, unit_by_words
 from identification.logs.swing import FEWEST, part_of_swing
 from identification.logs.units import to_si
 from identification.model.scaled_servo import is_scaled_servo, scaling

@@ -9,12 +9,12 @@ import re
 
 import numpy as np
 
-from identification.logs.column_words import unit_by_words, words_of
-from identification.logs.headers import name_and_unit
+from identification.logs.headers.column_words import unit_by_words, words_of
+from identification.logs.headers.headers import name_and_unit
+from identification.logs.headers.unknown_units import unknown_unit
 from identification.logs.names import group
 from identification.logs.sampling import FloatArray
 from identification.logs.units import UNITS
-from identification.logs.unknown_units import unknown_unit
 
 _TIMES = ("time", "t", "timestamp", "stamp", "secs", "sec", "seconds", "ms", "us", "ns")
 _STEPS = ((0.5, "s"), (200.0, "ms"), (2e5, "us"), (np.inf, "ns"))  # largest usual step in a unit

@@ -12,9 +12,10 @@ import numpy as np
 from identification.errors import InputError
 from identification.inspection.answers import Answer, find_answers
 from identification.inspection.guesses import family, is_time, time_unit, unit_of
-from identification.logs.column_words import Role, role_of
 from identification.logs.formats.formats import log_table, refuse_no_log
-from identification.logs.headers import name_and_unit, read_headers
+from identification.logs.headers.column_words import Role, role_of
+from identification.logs.headers.headers import name_and_unit, read_headers
+from identification.logs.headers.unknown_units import by_unknown_unit, unknown_sentence
 from identification.logs.names import listed, lookup
 from identification.logs.repeats import repeat_sentence, repeated_share
 from identification.logs.sampling import MIN_ROWS, FloatArray, grid
@@ -24,7 +25,6 @@ from identification.logs.stamps.standing import columns_of_time, refuse_standing
 from identification.logs.stamps.times import TIME, looks_like_time, times_sentence
 from identification.logs.table import Table, renamed
 from identification.logs.units import to_si
-from identification.logs.unknown_units import by_unknown_unit, unknown_sentence
 from identification.logs.wrapped import find_jumps, jump_sentence, turn_of
 from identification.storage.files import read_bytes
 

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from identification.inspection.channels import Channel, Match
 from identification.inspection.inspected import Inspection
 from identification.inspection.shared_names import shared_matches
-from identification.logs.column_words import is_force, is_rate, name_words, role_of
+from identification.logs.headers.column_words import is_force, is_rate, name_words, role_of
 
 SAME = "the same name"  # how a column was found, which is no guess
 BY_PLACE = ("guessed by its order", "guessed: no other is left")  # of columns that no name tells

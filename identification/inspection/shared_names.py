@@ -17,7 +17,7 @@ from collections.abc import Sequence
 
 from identification.inspection.channels import Channel, Match
 from identification.inspection.inspected import Inspection
-from identification.logs.column_words import is_force, is_rate, name_words, role_of
+from identification.logs.headers.column_words import is_force, is_rate, name_words, role_of
 
 ALONE = "guessed: no column beside it is a command"  # how such a column was found
 

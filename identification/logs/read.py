@@ -12,7 +12,8 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.formats.formats import log_table, refuse_no_log
-from identification.logs.headers import with_headers
+from identification.logs.headers.headers import with_headers
+from identification.logs.headers.unknown_units import told_of_unknown_units
 from identification.logs.log import Log
 from identification.logs.names import check_column_names, check_keys, lookup
 from identification.logs.plausible import check_plausible, check_possible
@@ -40,7 +41,6 @@ from identification.logs.table import (
     renamed,
 )
 from identification.logs.units import check_si
-from identification.logs.unknown_units import told_of_unknown_units
 from identification.logs.wrapped import without_wraps
 from identification.storage.files import readable
 

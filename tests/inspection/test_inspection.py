@@ -16,7 +16,7 @@ from identification.inspection.beginning import write_beginning
 from identification.inspection.guesses import is_time, time_unit, unit_of
 from identification.inspection.matching import Channel, match
 from identification.inspection.words import answer_sentence, answer_sentences
-from identification.logs.column_words import role_of
+from identification.logs.headers.column_words import role_of
 from identification.storage.files import toml_value
 
 STEP = 0.01

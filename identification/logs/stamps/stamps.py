@@ -20,7 +20,7 @@ import numpy as np
 
 from identification.errors import InputError
 from identification.logs.cures import lines_of
-from identification.logs.headers import read_headers
+from identification.logs.headers.headers import read_headers
 from identification.logs.names import quoted
 from identification.logs.sampling import FloatArray
 from identification.logs.sidecar import Sidecar

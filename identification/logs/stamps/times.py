@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from identification.logs.column_words import words_of
-from identification.logs.headers import split_header
+from identification.logs.headers.column_words import words_of
+from identification.logs.headers.headers import split_header
 from identification.logs.names import listed, quoted
 from identification.logs.sidecar import Sidecar
 from identification.logs.table import Table

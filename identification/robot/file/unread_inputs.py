@@ -20,10 +20,10 @@ import mujoco
 import numpy as np
 
 from identification.errors import InputError
-from identification.logs.column_words import looks_like, name_words, unit_by_words
 from identification.logs.cures import lines_of
 from identification.logs.formats.formats import log_table
-from identification.logs.headers import name_and_unit
+from identification.logs.headers.column_words import looks_like, name_words, unit_by_words
+from identification.logs.headers.headers import name_and_unit
 from identification.logs.log import Log
 from identification.logs.names import listed
 from identification.logs.sidecar import read_sidecar

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
-from identification.logs.headers import name_and_unit, split_header
+from identification.logs.headers.headers import name_and_unit, split_header
 from identification.logs.names import listed, lookup, quoted
 from identification.logs.sidecar import Sidecar
 from identification.logs.table import Table
