@@ -39,7 +39,7 @@ PASSES: Mapping[str, tuple[str, str]] = MappingProxyType({
     "impossible_sizes": (ALL, "names no effect of a size that physics forbids"),
     "drop_effects": (BOTH, "drops an effect that later ones have made needless"),
     "exchange_effects": (
-        BOTH, "puts another law in the place of an effect, where the model with it is better",
+        RUN, "puts a rival in the place of an effect, where the model with it is better",
     ),
     "other_kinds": (
         RUN, "exchanges the kind of an accepted effect once another effect is beside it",

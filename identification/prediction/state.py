@@ -2,7 +2,7 @@
 
 fit the nominal model  ->  score all candidates  ->  refit the best  ->  predict unseen records
                                    ^_____________________________________________|   again, with it
-then ask effects in their places, drop effects and places; where all are in doubt, add curves
+then drop effects and places; where all effects are in doubt, curves take their place
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from identification.prediction.moves.curve_for_doubtful import curve_for_doubtfu
 from identification.prediction.moves.drop_doubtful import drop_doubtful
 from identification.prediction.moves.drop_effects import drop_effects
 from identification.prediction.moves.drop_places import drop_places
-from identification.prediction.moves.exchange_effects import exchange_effects
 from identification.prediction.moves.likeliest_of_set import likeliest_of_set
 from identification.prediction.scoring.screening import score_all
 from identification.prediction.task import RecordsTask, WindowSearch, finishing
@@ -42,7 +41,6 @@ MOVES = (
     Move("add_yielding_friction", add_yielding_friction, grows=True),
     Move("add_set", add_set, grows=True),
     Move("add_curve", add_curve, grows=True),
-    Move("exchange_effects", exchange_effects),
     Move("drop_effects", finishing(drop_effects)),
     Move("drop_places", finishing(drop_places)),
     Move("drop_doubtful", drop_doubtful),

@@ -11,6 +11,13 @@ from identification.__main__ import main
 from identification.effects.plant.joint_plant import joint_plant
 from identification.logs.formats.csv_files import write_log
 
+# An arm of two joints, without actuators and sensors unless `rest` has them.
+ARM = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
+<body name="upper" pos="0 0 1"><joint name="shoulder" axis="0 1 0" damping="{damping}"/>
+<inertial pos="0 0 -0.2" mass="1.2" diaginertia="0.012 0.012 0.001"/>
+<body name="lower" pos="0 0 -0.4"><joint name="elbow" axis="0 1 0" damping="0.2"/>
+<inertial pos="0 0 -0.15" mass="0.6" diaginertia="0.006 0.006 0.001"/></body></body>
+</worldbody>{rest}</mujoco>"""
 TRUTH = {"damping": 3.6, "mass": 1.8, "stribeck_friction.f_s": 0.0}
 HIDDEN = {"asymmetric_viscous_friction.d_a@slide": 0.9}
 NAMES = ("mass", "joint/slide.damping", "qpos[0]", "qvel[0]")

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 from functools import cache
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from exchange_cases import MU, NAME, SAMPLES, other_side, pair, unproven
 from records_cases import (
     FREE,
     HORIZON,
@@ -18,7 +18,6 @@ from records_cases import (
     records,
     roles,
     search,
-    with_law,
 )
 
 from identification.discovery.findings.finding import FindingKind
@@ -28,10 +27,9 @@ from identification.prediction.discovery import discover_records
 from identification.prediction.fits.model import predict_fitted
 from identification.prediction.fits.nominal_fit import fit_nominal
 from identification.prediction.judging.judging import REFUTED
-from identification.prediction.judging.trial import Contender, compared, find_doubt
+from identification.prediction.judging.trial import Contender, find_doubt
 from identification.prediction.scoring.screening import score_all
 from identification.prediction.selection.exchange import (
-    _differ,
     exchanged,
     is_contradicted,
     missing_chance_alone,
@@ -39,7 +37,6 @@ from identification.prediction.selection.exchange import (
     without_contradicted,
 )
 from identification.prediction.selection.selection import refit_contenders
-from identification.prediction.selection.set_proof import _by_both_roles
 from identification.prediction.verdict import remaining
 from identification.prediction.verdict.remaining import needed_input_error
 from identification.windows.comparison import compare
@@ -48,28 +45,8 @@ from identification.windows.problem import with_scale
 from identification.windows.records import as_records
 from identification.windows.unseen import HORIZON as ALONE
 
-NAME, MU = "transmitted_load_friction", "transmitted_load_friction.mu@hinge"
-LOAD = {MU: 0.15}
 OFFSET = "offset.f_0@hinge"
 OPTIONS = DiscoveryOptions()
-SAMPLES = 300  # of each record
-
-
-@cache
-def pair(second):
-    """Two fitted records, of which the second may lack the law, and two that confirm; models."""
-    logs = records(4, LOAD, samples=500 if second == "lacks it" else SAMPLES)
-    if second == "lacks it":
-        logs[1] = record(2, plant=pendulum())
-    every = roles(logs)
-    without = fit_nominal(nominal_model(), every)
-    return every, without, with_law(without, NAME, every)
-
-
-@cache
-def other_side(second):
-    every, *models = pair(second)
-    return [exchanged(m, every, HORIZON) for m in models]
 
 
 def test_the_model_with_roles_exchanged_is_that_of_a_fit_to_the_other_records():
@@ -105,21 +82,6 @@ def test_a_curve_is_not_asked_because_a_record_tells_only_the_nodes_that_it_reac
         )  # fmt: skip
         tried, _ = without_contradicted([contender], bare, every, HORIZON, OPTIONS, lambda _: None)
         assert [t.doubt for t in tried] == [doubt]
-
-
-def unproven(second, doubt="chance", is_curve=False, **weak):
-    """A law whose gains in the records that confirm are no proof by themselves."""
-    _, without, with_it = pair(second)
-    (c,) = with_it.candidates
-    if is_curve:
-        with_it = replace(
-            with_it, candidates=(replace(c, effect=replace(c.effect, name="curve_speed")),)
-        )
-    seen = replace(compare(without.unseen, with_it.unseen), t=1.0, chance=0.2, rank_chance=0.2)
-    return Contender(
-        model=with_it, gains=np.zeros(4), numbers=1, doubt=doubt, prediction=seen, criterion=1.0,
-        explained=0.0, luck=0.2, **weak,
-    )  # fmt: skip
 
 
 def judged_by_both(second, contender):
@@ -165,42 +127,6 @@ def test_a_law_that_one_fitted_record_lacks_is_proven_and_then_contradicted():
     _, without, with_it = pair("lacks it")
     assert find_doubt(compare(without.unseen, with_it.unseen), 1, OPTIONS) is None
     assert is_contradicted(*other_side("lacks it"), with_it, OPTIONS)
-
-
-def test_a_worse_prediction_contradicts_only_where_the_numbers_of_both_roles_differ():
-    """A record that hardly tells a size predicts the others worse with it."""
-    _, _, with_it = pair("has it")
-    without, other = other_side("has it")
-    worse = replace(without, unseen=other.unseen), replace(other, unseen=without.unseen)
-    assert compared(worse[0].unseen, worse[1].unseen, OPTIONS).gain < 0
-    assert not is_contradicted(*worse, with_it, OPTIONS)
-    assert is_contradicted(*worse, with_it, DiscoveryOptions(without=("numbers_of_roles",)))
-    bound = replace(with_it, fit=replace(with_it.fit, q=np.zeros_like(with_it.fit.q)))
-    assert is_contradicted(*worse, bound, OPTIONS)  # its size is zero there
-
-
-@pytest.mark.parametrize(("mu", "most", "least"), [(0.15, 2, 0), (0.05, 12, 10)])
-def test_numbers_of_one_law_seldom_differ_between_roles_and_those_of_two_nearly_always(
-    mu, most, least
-):
-    differ = []
-    for seed in range(12):
-        fitted = [record(k, SAMPLES, LOAD, plant=pendulum()) for k in (50 + seed, 70 + seed)]
-        last = record(90 + seed, SAMPLES, {MU: mu}, plant=pendulum())
-        every = as_records(fitted, [last])
-        with_it = with_law(fit_nominal(nominal_model(), every), NAME, every)
-        other = exchanged(with_it, every, HORIZON)
-        differ.append(_differ(with_it, other, with_it.candidates, OPTIONS.significance))
-    assert least <= sum(differ) <= most
-
-
-@pytest.mark.parametrize(("without", "doubt"), [((), None), (("proof_by_both_roles",), "chance")])
-def test_a_member_of_a_set_that_misses_chance_alone_is_judged_by_both_roles(without, doubt):
-    every, bare, _ = pair("has it")
-    options = DiscoveryOptions(without=without)
-    task = SimpleNamespace(options=options, records=every, horizon=HORIZON)
-    found = _by_both_roles(SimpleNamespace(task=task), bare, unproven("has it"))
-    assert found.doubt == doubt
 
 
 @pytest.mark.long

@@ -4,7 +4,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from robot_cases import run
+from robot_cases import ARM, run
 from touching_cases import simulated
 
 from identification import fit, read_robot
@@ -13,12 +13,6 @@ from identification.robot.robot import read_robot_log
 
 pytestmark = pytest.mark.usefixtures("few_effects")
 
-ARM = """<mujoco><option timestep="0.002" integrator="RK4"/><worldbody>
-<body name="upper" pos="0 0 1"><joint name="shoulder" axis="0 1 0" damping="{damping}"/>
-<inertial pos="0 0 -0.2" mass="1.2" diaginertia="0.012 0.012 0.001"/>
-<body name="lower" pos="0 0 -0.4"><joint name="elbow" axis="0 1 0" damping="0.2"/>
-<inertial pos="0 0 -0.15" mass="0.6" diaginertia="0.006 0.006 0.001"/></body></body>
-</worldbody>{rest}</mujoco>"""
 MOTORS = """<actuator><motor name="{0}" joint="shoulder"/><motor name="{1}" joint="elbow"/>
 </actuator>"""
 SENSORS = """<sensor><jointpos name="shoulder" joint="shoulder"/>

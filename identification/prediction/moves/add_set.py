@@ -12,7 +12,6 @@ proven    each beside the others, and all together; the weakest that is not is l
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +23,7 @@ from identification.discovery.passes import uses
 from identification.effects.effect import Candidate
 from identification.prediction.fits.model import WindowModel
 from identification.prediction.judging.extension import refitted, weighed, with_effect
-from identification.prediction.judging.trial import Contender, compared, find_doubt
+from identification.prediction.judging.trial import compared, find_doubt
 from identification.prediction.scoring.contenders import list_starts
 from identification.prediction.scoring.first_fit import begin
 from identification.prediction.scoring.scores import window_scores
@@ -75,23 +74,9 @@ def add_set(state: WindowSearch, progress: Progress) -> WindowSearch:
         asked.append(_keys(model))
     found = proven_members(state, model, refits, progress) if places else ()
     watch.stop("refits")
-    state = replace(state, seconds=watch.seconds)
-    return with_members(state, found, places) if found else state
-
-
-def with_members(
-    state: WindowSearch, found: Sequence[Contender], places: Mapping[Key, Place]
-) -> WindowSearch:
-    """Returns the state with the members of a set, all candidates scored beside them.
-
-    Args:
-        state: without them.
-        found: the members, each beside the others.
-        places: what was tried in the place of each.
-    """
-    task, watch = state.task, Watch(state.seconds)
+    if not found:
+        return replace(state, seconds=watch.seconds)
     model = weighed(found[0].model, task.horizon, task.confirm, task.options)
-    watch.stop("refits")
     scores = score_all(model, task.effects, task.options)
     watch.stop("scores")
     named = {c.candidate.key for c in found}

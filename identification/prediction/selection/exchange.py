@@ -23,8 +23,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import norm
 
+from identification.chances import normal_level
 from identification.discovery.attempts import attempt, refuse_infinite
 from identification.discovery.options import DiscoveryOptions
 from identification.discovery.passes import uses
@@ -204,7 +204,7 @@ def _differ(
     names = [n for c in effects for n in (*c.free, *shapes_of(c)) if n in shared]
     if not names or at_bound & {*names} or any(n not in std for n in names for std in each):
         return True
-    z = norm.isf(level / 2 / len(names))
+    z = normal_level(level / 2 / len(names))
     apart = [abs(model.fit.values[n] - other.fit.values[n]) for n in names]
     std = [float(np.hypot(each[0][n], each[1][n])) for n in names]
     return any(d > z * s for d, s in zip(apart, std, strict=True))

@@ -10,6 +10,7 @@ then told, and the verdict is "unknown effect".
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -22,18 +23,18 @@ from identification.discovery.effect_results import (
 )
 from identification.discovery.findings.finding import Finding, FindingKind
 from identification.discovery.options import DiscoveryOptions
+from identification.discovery.passes import uses
 from identification.discovery.result import Discovery, Verdict
 from identification.logs.joined import REPLAYED, replayed_share
 from identification.logs.log import Log
 from identification.logs.rest import is_at_rest
 from identification.prediction.fits.model import WindowModel
 from identification.prediction.fits.record_errors import error_of_all, errors_by_unit, record_errors
-from identification.prediction.judging.extension import refitted
+from identification.prediction.judging.extension import as_last_fit, refitted
 from identification.prediction.judging.trial import Contender, Doubt
 from identification.prediction.task import WindowSearch
 from identification.prediction.verdict.clocks import record_shifts
 from identification.prediction.verdict.doubts import doubts_of_names, forbidden_of, names_of
-from identification.prediction.verdict.last_fit import with_last_fit
 from identification.prediction.verdict.recovery import recover_over_horizon
 from identification.prediction.verdict.remaining import find_remaining, is_off, needed_input_error
 from identification.prediction.verdict.told_effects import (
@@ -59,7 +60,7 @@ def conclude(state: WindowSearch) -> Discovery:
     Args:
         state: the finished state.
     """
-    state = with_last_fit(state)
+    state = _with_last_fit(state)
     task, model = state.task, state.model
     options = task.options
     rejected = listed_once([rejected_effect(state, c) for c in state.rejected])
@@ -187,6 +188,23 @@ def _failed(state: WindowSearch) -> tuple[Failed, ...]:
     """Returns what failed or was begun and left, but for what another round has refitted."""
     refitted = {c.candidate.key for c in (*state.accepted, *state.rejected)}
     return tuple(f for f in state.failed if not (f.dropped and f.key in refitted))
+
+
+def _with_last_fit(state: WindowSearch) -> WindowSearch:
+    """Returns the state whose final model is fitted as the last one (`as_last_fit`).
+
+    Values that are worse after a fit than before it are kept as they were, and none is fitted.
+
+    Args:
+        state: of a search that is over.
+    """
+    task, model = state.task, state.model
+    if state.worse_fit is not None and not model.candidates:
+        return state
+    is_weighed = bool(model.candidates) and uses(task.options, "priors_of_last_fit")
+    last = partial(as_last_fit, model, task.horizon, task.confirm, is_weighed)
+    final = attempt(None, last) or model
+    return replace(state, model=final, nominal=final if state.nominal is model else state.nominal)
 
 
 def _repeats(records: Sequence[Record]) -> tuple[str, ...]:
