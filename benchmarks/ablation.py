@@ -2,6 +2,7 @@
 
     python benchmarks/ablation.py [--seed 1] [--count 2] [--processes 2]
     python benchmarks/ablation.py --passes signed_ranks own_weights --worlds leg pendulum
+    python benchmarks/ablation.py --rough --worlds leg arm    robots with what no law describes
     python benchmarks/ablation.py --passes --options significance min_fall     each ± 50 %
     python benchmarks/ablation.py --only-page          the page anew, from the rows
 
@@ -30,6 +31,7 @@ from typing import Any
 
 import hidden_joints
 import robot_models
+import robot_page
 from joint_statistics import (
     count_found,
     has_false_name,
@@ -44,7 +46,7 @@ from joint_worlds.hidden import NULL, THREE, effects_of
 from joint_worlds.motion import ROBOTS
 from joint_worlds.world import UnseenError, make_world
 from robot_motions import DRIVEN
-from robot_worlds import NAMES, is_asked, make, write
+from robot_worlds import NAMES, SEVERAL, is_asked, make, write
 from rows import ROOT, Row, answered, of_newest, rows_of, write_part
 from scipy.stats import binomtest
 
@@ -84,7 +86,7 @@ def is_good(row: Row) -> bool:
     are all named.
     """
     if "truth" not in row:
-        return robot_models.is_right(row)
+        return robot_page.is_right(row)
     if is_of_several(row):
         return count_found(row) == len(row["truth"]["acting"]) and not has_false_name(row)
     if is_null(row):
@@ -97,7 +99,7 @@ def is_good(row: Row) -> bool:
 def is_false(row: Row) -> bool:
     """Returns whether a law is named that is not there."""
     if "truth" not in row:
-        return robot_models.is_wrong(row)
+        return robot_page.is_wrong(row)
     if is_of_several(row):
         return has_false_name(row)
     if is_null(row) or is_unlisted(row):
@@ -105,7 +107,9 @@ def is_false(row: Row) -> bool:
     return row["verdict"] == "named" and not is_right_or_alike(row)
 
 
-def study(robot: str, effect: str, seed: int, asked: Sequence[str]) -> dict[str, Any]:
+def study(
+    robot: str, effect: str, seed: int, asked: Sequence[str], is_rough: bool = False
+) -> dict[str, Any]:
     """Returns what the searches of a world say; an error is a row too.
 
     Args:
@@ -113,11 +117,12 @@ def study(robot: str, effect: str, seed: int, asked: Sequence[str]) -> dict[str,
         effect: that it hides.
         seed: of the world.
         asked: passes, and options.
+        is_rough: whether the robot also has what no law describes (`robot_worlds`).
     """
     os.environ["INCA_MJ_THREADS"] = "1"
     with TemporaryDirectory() as folder:
         try:
-            truth, toml, logs, told = _world(robot, effect, seed, Path(folder))
+            truth, toml, logs, told = _world(robot, effect, seed, Path(folder), is_rough)
         except UnseenError as error:
             return {"unseen": str(error)}
         passes = [name for name in asked if name in PASSES]
@@ -132,16 +137,17 @@ Told = Callable[[Any], dict[str, Any]]
 
 
 def _world(
-    robot: str, effect: str, seed: int, folder: Path
+    robot: str, effect: str, seed: int, folder: Path, is_rough: bool
 ) -> tuple[dict[str, Any], Path, list[Path], Told]:
     """Returns the truth of a world, its files, and what says in its study's words what is found."""
     if robot in ROBOTS:
         world = make_world(robot, effect, seed, DURATION)
         toml, *logs = write_world(world, folder)
         return {"truth": truth_of(world)}, toml, logs, hidden_joints.answer_of
-    small, motions = make(robot, effect, seed)
+    small, motions = make(robot, effect, seed, is_rough)
     toml, logs = write(small, motions, folder)
-    truth = {"robot": robot, "effect": effect, "joint": small.joint}
+    truth = {"robot": robot, "effect": small.effect, "joint": small.joint,
+             "rough": {joint: round(size, 6) for joint, size in small.rough}}  # fmt: skip
     return truth, toml, logs, robot_models.answer_of
 
 
@@ -204,12 +210,11 @@ def section(rows: Sequence[Row]) -> str:
     return "\n".join([
         *head,
         f"Search of {rows[-1]['commit']}, over a horizon. It answers {good} of {len(done)} worlds"
-        f" right ({', '.join(f'{robot} {n}' for robot, n in sorted(robots.items()))}; most hide one"
-        " effect, so that they say little of passes for several effects). A pass or an option"
-        " counts by the worlds whose verdict or names change without the pass, or with the option"
-        " half and one and a half times as large. *Chance*: that as unequal numbers come of a pass"
-        " that is worth nothing (McNemar 1947). *Time*: processor time of a search without it that"
-        " is new, over that of the whole search.", "",
+        f" right ({', '.join(f'{robot} {n}' for robot, n in sorted(robots.items()))})."
+        " A pass or an option counts by the worlds whose verdict or names change without the pass,"
+        " or with the option half and one and a half times as large. *Chance*: that as unequal"
+        " numbers come of a pass that is worth nothing (McNemar 1947). *Time*: processor time of a"
+        " search without it that is new, over that of the whole search.", "",
         "| without, or with | worlds | other answer | right only with it | right only without it |"
         " chance | laws that are not there, with it and without | time |",
         "|---|---|---|---|---|---|---|---|", *lines(done), "",
@@ -236,7 +241,7 @@ def lines(done: Sequence[Row]) -> Iterator[str]:
 def tasks(given: argparse.Namespace) -> Mapping[str, tuple[Any, ...]]:
     """Returns the worlds by key: every robot and effect once before any twice."""
     out: dict[str, tuple[Any, ...]] = {}
-    of_robot = {r: [*NAMES] for r in DRIVEN} | {
+    of_robot = {r: [*NAMES, *SEVERAL] for r in DRIVEN} | {
         r: [NULL, *effects_of(ROBOTS[r]), THREE] for r in ROBOTS
     }
     asked = (*given.passes, *given.options)
@@ -246,7 +251,11 @@ def tasks(given: argparse.Namespace) -> Mapping[str, tuple[Any, ...]]:
                 effects = of_robot[robot]
                 if k >= len(effects) or not is_asked(robot, effects[k]):
                     continue
-                out[f"{robot}/{effects[k]}/{seed}"] = (robot, effects[k], seed, asked)
+                key = f"{robot}/{effects[k]}/{seed}"
+                if not given.rough:
+                    out[key] = (robot, effects[k], seed, asked)
+                elif robot in DRIVEN:
+                    out[f"{key}/rough"] = (robot, effects[k], seed, asked, True)
     return out
 
 
@@ -260,6 +269,7 @@ def main() -> int:
         metavar="ROBOT")  # fmt: skip
     add("--passes", nargs="*", choices=ASKED, default=ASKED, metavar="PASS")
     add("--options", nargs="*", choices=numbers, default=[], metavar="OPTION")
+    add("--rough", action="store_true", help="worlds of robots with what no law describes")
     add("--seed", type=int, default=1)
     add("--count", type=int, default=1, help="worlds of each robot and effect")
     add("--processes", type=int, default=1)

@@ -48,7 +48,7 @@ def test_only_worlds_that_one_search_alone_answers_right_count():
     assert float(told[0][5]) == pytest.approx(2 * binom.cdf(1, 7, 0.5), rel=0.05)
     assert told[0][6:] == ["1, 6", "0.29"]
     assert told[1][1:] == ["12", "0", "0", "0", "1", "1, 1", "0.00"]
-    assert "It answers 11 of 12 worlds right (leg 12; " in " ".join(ablation.section(rows).split())
+    assert "It answers 11 of 12 worlds right (leg 12). " in " ".join(ablation.section(rows).split())
 
 
 def test_every_pass_and_both_values_of_an_option_are_asked_beside_the_whole_search():
@@ -61,7 +61,7 @@ def test_every_pass_and_both_values_of_an_option_are_asked_beside_the_whole_sear
 
 def test_every_robot_hides_every_effect_once_before_any_twice():
     given = argparse.Namespace(
-        passes=["add_set"], options=[], seed=3, count=2, worlds=["leg", "pendulum"]
+        passes=["add_set"], options=[], seed=3, count=2, worlds=["leg", "pendulum"], rough=False
     )
     keys = [*ablation.tasks(given)]
     half = len(keys) // 2
@@ -70,3 +70,21 @@ def test_every_robot_hides_every_effect_once_before_any_twice():
         k.rpartition("/")[0] for k in keys[half:]
     }
     assert keys[:2] == ["leg/nothing/3", "pendulum/nothing/3"]
+
+
+def test_worlds_that_are_rough_are_of_robots_that_can_be():
+    given = argparse.Namespace(
+        passes=["add_set"], options=[], seed=3, count=1, worlds=["leg", "pendulum"], rough=True
+    )
+    assert {key.split("/")[0] for key in ablation.tasks(given)} == {"leg"}
+    assert all(key.endswith("/rough") for key in ablation.tasks(given))
+
+
+@pytest.mark.parametrize(("name", "where", "good"), [
+    ("coulomb_friction", "joint knee", True), ("coulomb_friction", "joint hip", False)
+])  # fmt: skip
+def test_a_world_of_a_small_robot_is_good_where_its_effect_is_named_at_its_joint(name, where, good):
+    row = {"robot": "leg", "effect": "coulomb_friction", "joint": "knee", "rough": {},
+           "verdict": "named", "differences": [], "clocks": [],
+           "named": [{"name": name, "where": where, "confidence": 0.9, "rivals": []}]}  # fmt: skip
+    assert (ablation.is_good(row), ablation.is_false(row)) == (good, not good)
