@@ -96,15 +96,17 @@ def _standing_still(
     """
     shift, none, records = begin, np.zeros(len(begin)), len(begin)
     equations, whole = fitted(none)
-    first, at = whole, [k for k, name in enumerate(whole.names) if name.startswith(CLOCK)]
+    first = whole
     if begin.any():
         equations, whole = fitted(begin)
     for _ in range(ROUNDS):
+        at = _of_clocks(whole)
         before, shift = shift, whole.fit.θ[at]
         still = np.maximum(STILL, STILL_SHARE * whole.fit.std[at])
         if (np.abs(shift - before) < still).all():
             break
         equations, whole = fitted(shift)
+    at = _of_clocks(whole)
     fit, C = whole.fit, whole.fit.covariance[np.ix_(at, at)]
     n, σ = equations.counts.sum(axis=1), np.nan_to_num(fit.σ)
     noise = float(fit.weights @ (n * equations.noise**2))
@@ -114,9 +116,16 @@ def _standing_still(
     std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", L, C, L), 0.0))
     is_far = is_told = bool((np.abs(L @ shift) > np.maximum(FAR * std, STILL)).any())
     if is_told and is_much:
-        after, without = (_left(f, fit.weights, held) for f, held in ((whole, []), (first, at)))
+        after, without = (
+            _left(f, fit.weights, held) for f, held in ((whole, []), (first, _of_clocks(first)))
+        )
         is_told = takes_most(without, after, noise)
     return Clocks(shift if is_told else none, std[:records]), shift, is_far and is_much
+
+
+def _of_clocks(whole: Fitted) -> list[int]:
+    """Returns the columns of the clocks; other shifts may feel more or fewer of the others."""
+    return [k for k, name in enumerate(whole.names) if name.startswith(CLOCK)]
 
 
 def _left(fitted: Fitted, weights: np.ndarray, held: Sequence[int]) -> float:

@@ -10,6 +10,7 @@ import pytest
 
 from identification import InputError, Log, fit_torques, read_robot
 from identification.refusals.wiring import refuse_unbalanced
+from identification.torques import clock
 from identification.torques.equations.drives import input_at
 from identification.torques.equations.rows import make_rows
 
@@ -146,3 +147,21 @@ def test_setpoints_and_positions_in_degrees_are_refused_and_radians_are_not(tmp_
     degrees = replace(log, inputs=np.rad2deg(log.inputs), outputs=np.rad2deg(log.outputs))
     with pytest.raises(InputError, match='q0 = "deg" and q1 = "deg" and u0 = "deg" and u1 = "deg"'):
         refuse_unbalanced(own, degrees)
+
+
+def test_clocks_are_found_where_another_shift_feels_fewer_numbers(tmp_path, monkeypatch):
+    """Whether kp is a gain is told by its column, and that by where the inputs stand."""
+    fitted = []
+
+    def fit_base(model, equations, base, others, **how):
+        if not any(rows.shift for rows in equations.rows):
+            others = replace(others, shares=np.zeros_like(others.shares))
+        fitted.append(clock_fit(model, equations, base, others, **how))
+        return fitted[-1]
+
+    clock_fit = clock.fit_base
+    monkeypatch.setattr(clock, "fit_base", fit_base)
+    logs = [record(k, 0.02) for k in range(2)]
+    found = fit_torques(read(tmp_path, logs[:1], logs[1:], ("joint/j0.armature", SERVOS[0])))
+    assert len(fitted[0][1].names) > len(fitted[-1][1].names)
+    assert found.found.clocks.shift == pytest.approx(np.full(2, 0.02), abs=5e-4)
