@@ -16,7 +16,7 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from identification.effects.servo_error import position_servo
+from identification.effects.servo_error import commands_of, position_servo
 from identification.errors import InputError
 from identification.logs.log import Log
 from identification.logs.names import listed
@@ -25,6 +25,7 @@ from identification.logs.plausible import refuse_frozen
 from identification.model.hostile import HUGE
 from identification.model.predictor import output_columns
 from identification.model.rollout import UNLOGGED, logged_inputs
+from identification.model.tied import is_filtered
 from identification.runtime.engine import quiet
 
 Kind = Literal["hinge", "slide"]
@@ -51,7 +52,8 @@ class Axis:
         speed: top speed [rad/s or m/s].
         travel: how far it moves [rad or m].
         plain: whether it has drives of its own, and their force is gain·u + bias: its load is then
-            known. A tendon that pulls is no drive of its own.
+            known; u is the input or what a filter makes of it. A tendon that pulls is no drive of
+            its own.
         heavy: whether gravity acts on it anywhere.
         tilts: whether gravity's force on it changes with the pose; where it is constant, a friction
             that grows with it is a Coulomb friction.
@@ -163,7 +165,7 @@ def _axis(model: mujoco.MjModel, log: Log, j: int, columns: dict[str, np.ndarray
     speed, travel = float(np.abs(rates).max()), float(np.ptp(way))
     drives = drives_of(model, j)
     v = columns["qvel"] if "qvel" in columns else np.gradient(way, h)
-    force = sum(float(np.abs(_forces(model, i, log.inputs, way, v)).max()) for i in drives)
+    force = sum(float(np.abs(_forces(model, i, log.inputs, h, way, v)).max()) for i in drives)
     dof = int(model.jnt_dofadr[j])
     if not drives:
         force = _pulled(model, log, dof)
@@ -215,7 +217,7 @@ def _control(model: mujoco.MjModel, i: int) -> int:
 
 
 def _forces(
-    model: mujoco.MjModel, i: int, inputs: np.ndarray, q: np.ndarray, v: np.ndarray
+    model: mujoco.MjModel, i: int, inputs: np.ndarray, h: float, q: np.ndarray, v: np.ndarray
 ) -> np.ndarray:
     """Returns the forces of actuator i on its joint, shape (N,): γ (k u + b_0 + b_1 γ q + b_2 γ v).
 
@@ -224,7 +226,7 @@ def _forces(
     gear, gain = float(model.actuator_gear[i, 0]), float(model.actuator_gainprm[i, 0])
     is_biased = int(model.actuator_biastype[i]) == int(mujoco.mjtBias.mjBIAS_AFFINE)
     b_0, b_1, b_2 = model.actuator_biasprm[i, :3] if is_biased else np.zeros(3)
-    u = inputs[:, _control(model, i)]
+    u = commands_of(model, i, inputs, h)
     return np.asarray(gear * (gain * u + b_0 + b_1 * gear * q + b_2 * gear * v))
 
 
@@ -248,10 +250,12 @@ def _pulled(model: mujoco.MjModel, log: Log, dof: int) -> float:
 
 
 def _plain(model: mujoco.MjModel, i: int) -> bool:
-    """Returns whether the force of actuator i is gain·u + bias."""
+    """Returns whether the force of actuator i is gain·u + bias, u its input or that, filtered."""
+    is_early = is_filtered(model, i) and bool(model.actuator_actearly[i])
     biases = (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE)
     return (
-        int(model.actuator_dyntype[i]) == int(mujoco.mjtDyn.mjDYN_NONE)
+        (int(model.actuator_dyntype[i]) == int(mujoco.mjtDyn.mjDYN_NONE) or is_filtered(model, i))
+        and not is_early
         and int(model.actuator_gaintype[i]) == int(mujoco.mjtGain.mjGAIN_FIXED)
         and int(model.actuator_biastype[i]) in (int(b) for b in biases)
     )

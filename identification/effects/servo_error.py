@@ -1,6 +1,8 @@
 """The error of a joint's position servo along a log, and its integral.
 
     e = u/γ - q,    z = ∫ e dt                 u: setpoint, γ: gear of the actuator, q: as measured
+    u_k = a u_(k-1) + (1 - a) c_(k-1)          of an actuator that filters its command c,
+    a = e^(-h/T)                               T: its time constant, h: sampling time
 
 An integral part knows z. What was wound up before the log is not known: a window begins at z of the
 log, and is free about it by how far z moves there, and by what holds `SOON` of the largest force.
@@ -12,10 +14,11 @@ from collections.abc import Sequence
 
 import mujoco
 import numpy as np
+from scipy.signal import lfilter
 
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
-from identification.model.tied import servo_kind
+from identification.model.tied import is_filtered, servo_kind
 
 SOON = 0.1  # [s]: an integral part wound up for so long at the largest error was there before
 
@@ -33,6 +36,23 @@ def position_servo(model: mujoco.MjModel, drives: Sequence[int]) -> tuple[str, f
     return model.actuator(i).name, float(model.actuator_gear[i, 0]), float(gains[i])
 
 
+def commands_of(model: mujoco.MjModel, i: int, inputs: np.ndarray, h: float) -> np.ndarray:
+    """Returns u, that by which an actuator acts, at the samples of a log, shape (N,).
+
+    Args:
+        model: with the actuator.
+        i: its row.
+        inputs: of the log, shape (N, nu).
+        h: its sampling time [s].
+    """
+    c = inputs[:, int(model.actuator_ctrladr[i])]
+    if not is_filtered(model, i):
+        return c
+    a = float(np.exp(-h / max(float(model.actuator_dynprm[i, 0]), 1e-9 * h)))
+    u, _ = lfilter([0.0, 1 - a], [1.0, -a], c, zi=[c[0]])
+    return np.asarray(u)
+
+
 def errors_of(model: mujoco.MjModel, servo: int, log: Log) -> np.ndarray | None:
     """Returns e of a servo at the samples of a log, shape (N,); None where q is not measured."""
     at = int(model.jnt_qposadr[int(model.actuator_trnid[servo, 0])])
@@ -40,7 +60,7 @@ def errors_of(model: mujoco.MjModel, servo: int, log: Log) -> np.ndarray | None:
                 if field == "qpos"}  # fmt: skip
     if at not in measured:
         return None
-    u = log.inputs[:, int(model.actuator_ctrladr[servo])]
+    u = commands_of(model, servo, log.inputs, log.sampling_time)
     q = log.outputs[:, measured[at]]
     return np.asarray(u / float(model.actuator_gear[servo, 0]) - q)
 

@@ -99,7 +99,7 @@ def _named(
 ) -> tuple[tuple[str, float], ...]:
     """Returns the numbers of actuators that are called by a name of MJCF."""
     if name == "timeconst":
-        if all(int(model.actuator_dyntype[row]) in _DYNAMICS for row in rows):
+        if all(is_filtered(model, row) for row in rows):
             return ((f"{at}.dynprm[0]", 1.0),)
         lacks = "has no filter between command and force; give it dyntype, or free another number"
     elif name == "forcerange":
@@ -139,6 +139,11 @@ def servo_kind(model: mujoco.MjModel, row: int) -> str | None:
     if bias[1] == -gain and (gain or not bias[2]):
         return "position"
     return "velocity" if gain and not bias[1] and bias[2] == -gain else None
+
+
+def is_filtered(model: mujoco.MjModel, row: int) -> bool:
+    """Returns whether an actuator acts by what a filter of first order makes of its command."""
+    return int(model.actuator_dyntype[row]) in _DYNAMICS
 
 
 def follows(model: mujoco.MjModel, row: int) -> str | None:

@@ -18,7 +18,7 @@ MJCF = """<mujoco model="lever">
   <option timestep="0.002" integrator="RK4"/>
   <worldbody><body name="bar" gravcomp="{float}"><joint name="pivot" axis="0 -1 0" damping="0.08"/>
     <inertial pos="0.15 0 0" mass="0.4" diaginertia="1e-3 3e-3 3e-3"/></body></worldbody>
-  <actuator><position name="aim" joint="pivot" kp="{kp}" kv="{kv}" gear="{gear}"
+  <actuator><position name="aim" joint="pivot" kp="{kp}" kv="{kv}" gear="{gear}"{filter}
       forcerange="-{most} {most}"/></actuator>
   <sensor><jointpos name="angle" joint="pivot"/></sensor>
 </mujoco>"""
@@ -33,6 +33,7 @@ class Servo:
     kv: float = 0.3
     gear: float = 1.0
     most: float = 50.0  # largest force of the actuator
+    timeconst: float = 0.0  # of the filter of its setpoint, in the model [s]
     w: float = 0.0  # one over the largest rate of its setpoint [s/rad]
     band: float = 0.0  # half its dead band
     k_i: float = 0.0
@@ -40,7 +41,8 @@ class Servo:
 
     def text(self) -> str:
         """The model's file, without what it lacks."""
-        return MJCF.format(kp=self.kp, kv=self.kv, gear=self.gear, most=self.most,
+        late = f' timeconst="{self.timeconst}"' if self.timeconst else ""
+        return MJCF.format(kp=self.kp, kv=self.kv, gear=self.gear, most=self.most, filter=late,
                            float=0 if self.weight else 1)  # fmt: skip
 
     def rate(self, s: np.ndarray, x: float) -> np.ndarray:

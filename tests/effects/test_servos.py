@@ -67,10 +67,10 @@ def test_a_step_becomes_a_ramp_and_a_slow_ramp_passes():
     assert 0 < late[1:].max() < 0.01
 
 
-@pytest.mark.parametrize("gear", [1.0, -2.0])
-def test_a_load_rests_behind_the_dead_band_and_no_load_rests_anywhere_within(gear):
+@pytest.mark.parametrize(("gear", "timeconst"), [(1.0, 0.0), (-2.0, 0.0), (-2.0, 0.05)])
+def test_a_load_rests_behind_the_dead_band_and_no_load_rests_anywhere_within(gear, timeconst):
     """Torque balance: γ² k_p (|e| - d) holds m g l cos q."""
-    d, servo = 0.05, replace(SERVO, gear=gear, kp=20.0)
+    d, servo = 0.05, replace(SERVO, gear=gear, kp=20.0, timeconst=timeconst)
     u = np.full(600, gear * 0.3)
     q = run(lever(servo), servo_log(u), **{BAND: d})[-1, 0]
     e = 0.3 - q
@@ -86,13 +86,44 @@ def test_a_load_rests_behind_the_dead_band_and_no_load_rests_anywhere_within(gea
 
 
 @pytest.mark.parametrize("gamma", [0.3, -0.2])
-@pytest.mark.parametrize("more", [{}, {"gear": -1.5, "most": 2.5}])
+@pytest.mark.parametrize(
+    "more", [{}, {"gear": -1.5, "most": 2.5}, {"timeconst": 0.05}, {"timeconst": 0.02, "most": 2.5}]
+)
 def test_another_gain_is_that_of_another_servo(gamma, more):
     servo, u = replace(SERVO, **more), setpoints(4, 150)
     got = run(lever(servo), servo_log(u), **{OTHER: gamma})
     other = replace(servo, kp=(1 + gamma) * servo.kp)
     np.testing.assert_allclose(got, run(lever(other), servo_log(u)), atol=1e-12)
     assert np.abs(got - run(lever(servo), servo_log(u))).max() > 0.02
+
+
+def test_a_filter_of_the_setpoint_hides_no_candidate_and_its_force_is_known():
+    """Laws of the drive's force need it, and `<position timeconst>` filters its setpoint."""
+    servo = replace(SERVO, timeconst=0.05)
+    plant, u = lever(servo), setpoints(3, 300)
+    assert {e.name for e in plant.effects} == {e.name for e in lever(SERVO).effects}
+    log = servo_log(u, run(plant, servo_log(u)))
+    model = mujoco.MjModel.from_xml_string(servo.text())
+    data, largest, steps = mujoco.MjData(model), 0.0, round(STEP / model.opt.timestep)
+    data.act[:] = u[0]
+    for target in u:
+        data.ctrl[:] = target
+        for _ in range(steps):
+            mujoco.mj_step(model, data)
+            largest = max(largest, abs(float(data.qfrc_actuator[0])))
+    (axis,) = axes(model, log)
+    assert axis.servo == "aim"
+    assert axis.force == pytest.approx(largest, rel=0.05)
+    (unfiltered,) = axes(mujoco.MjModel.from_xml_string(SERVO.text()), log)
+    assert unfiltered.force > 1.3 * largest
+
+
+def test_an_actuator_that_acts_by_the_next_activation_has_no_known_force():
+    early = mujoco.MjModel.from_xml_string(replace(SERVO, timeconst=0.05).text())
+    early.actuator_actearly[:] = True
+    (axis,) = axes(early, servo_log(setpoints(3, 100)))
+    assert not axis.plain
+    assert not axis.servo
 
 
 def test_a_dead_band_takes_nothing_from_a_servo_at_its_limit():

@@ -39,7 +39,8 @@ STEPS_ALONE = 3.0  # where each is held by itself, although the inertia of one i
 
 # What an effect sees of a hinge or slide joint.
 #   time [s]; q, v: position [rad or m] and velocity [rad/s or m/s]
-#   f_u [N m or N]: force of the joint's own drives; NaN where it is not gain·u + bias
+#   f_u [N m or N]: force of the joint's own drives; NaN where it is not gain·u + bias, of an input
+#   or of what a filter makes of it
 #   f_g [N m or N]: force of gravity on the joint, of all that hangs on it
 #   sign: direction of the motion that friction resists, 1 or -1; 0 for a force
 #   what the records reach: q_mid, q_far: middle and half of the travel [rad or m]; v_top: top speed
@@ -71,7 +72,7 @@ M = offsets(
     " actuator_gear actuator_gainprm actuator_biasprm actuator_dyntype actuator_gaintype"
     " actuator_biastype actuator_ctrladr actuator_ctrllimited actuator_ctrlrange"
     " actuator_forcelimited actuator_forcerange jnt_type jnt_bodyid body_subtreemass M_rowadr"
-    " M_rownnz M_colind nv actuator_actadr",
+    " M_rownnz M_colind nv actuator_actadr actuator_actnum actuator_actearly",
 )
 D = offsets(
     "mjData",
@@ -86,6 +87,7 @@ _JOINT = int(mujoco.mjtTrn.mjTRN_JOINT)
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 _NO_DYNAMICS = int(mujoco.mjtDyn.mjDYN_NONE)
+_FILTERS = int(mujoco.mjtDyn.mjDYN_FILTER), int(mujoco.mjtDyn.mjDYN_FILTEREXACT)
 _FIXED = int(mujoco.mjtGain.mjGAIN_FIXED)
 _NO_BIAS, _AFFINE = int(mujoco.mjtBias.mjBIAS_NONE), int(mujoco.mjtBias.mjBIAS_AFFINE)
 _USER_BIAS = int(mujoco.mjtBias.mjBIAS_USER)
@@ -116,18 +118,27 @@ def _actuator(m, d, i, q, v):
     """Returns what actuator i does to its joint: f, e, k_p, f_s, f_low and f_high.
 
     f is gain·u + bias [N or N m], and NaN for another law; k_p is 0 where it is no position servo.
+    u is the input, or what the actuator's filter makes of it.
     """
     bias = integer(m, M.actuator_biastype, i)
     if bias == _USER_BIAS and double(m, M.actuator_biasprm, _BIASES * i) == TAG:
         return 0.0, *_NO_SERVO  # it carries a state of the joint (`native.joint_states`)
+    dynamics = integer(m, M.actuator_dyntype, i)
+    is_filtered = dynamics == _FILTERS[0] or dynamics == _FILTERS[1]
     if (
-        integer(m, M.actuator_dyntype, i) != _NO_DYNAMICS
+        (dynamics != _NO_DYNAMICS and not is_filtered)
+        or (is_filtered and load_byte(word(m, M.actuator_actearly) + i))
         or integer(m, M.actuator_gaintype, i) != _FIXED
         or (bias != _NO_BIAS and bias != _AFFINE)
     ):
         return np.nan, *_NO_SERVO
-    at = integer(m, M.actuator_ctrladr, i)
-    u = _clipped(m, M.actuator_ctrllimited, M.actuator_ctrlrange, at, double(d, D.ctrl, at))
+    if is_filtered:
+        u = double(
+            d, D.act, integer(m, M.actuator_actadr, i) + integer(m, M.actuator_actnum, i) - 1
+        )
+    else:
+        at = integer(m, M.actuator_ctrladr, i)
+        u = _clipped(m, M.actuator_ctrllimited, M.actuator_ctrlrange, at, double(d, D.ctrl, at))
     gear = double(m, M.actuator_gear, _GEARS * i)
     gain, follows = double(m, M.actuator_gainprm, _GAINS * i), 0.0
     own = gain * u
