@@ -48,6 +48,8 @@ STIFF = ARM.replace('kp="20" kv="1"', 'kp="200" kv="90" forcerange="-40 40"').re
     'kp="15"', 'kp="60" kv="8"')  # fmt: skip
 RUBS = 'frictionloss="0.2" damping'  # by MuJoCo's own dry friction
 TIED = """<equality><joint joint1="j1" joint2="j2" polycoef="0 0.7 0 0 0"/></equality></mujoco>"""
+FILTERED = ARM.replace('kp="25"', 'kp="25" timeconst="0.04"').replace(
+    'kv="1"', 'kv="1" timeconst="0.1"')  # fmt: skip
 CASES = {
     "slider": (SLIDER, "Euler", {}, 1),
     "slider that rubs": (SLIDER, "implicitfast", COULOMB, 1),
@@ -63,6 +65,9 @@ CASES = {
                                         "Euler", {}, 1),
     "arm of a model with friction": (ARM.replace("damping", RUBS), "implicitfast", HARDENING, 1),
     "arm whose joints are tied": (ARM.replace("</mujoco>", TIED), "implicitfast", HARDENING, 1),
+    "arm that filters its setpoints": (
+        FILTERED, "implicitfast", {"servo_gain.gamma@j1": 0.2, "dead_band.d@j0": 0.01}, 1,
+    ),
     "tied arm of a model with friction": (
         ARM.replace("damping", RUBS).replace("</mujoco>", TIED), "RK4", {}, 1,
     ),
