@@ -105,13 +105,22 @@ def _refuse_needed(spec: mujoco.MjSpec, geom: mujoco.MjsGeom, file: str, where: 
 
 def _needed(spec: mujoco.MjSpec, geom: mujoco.MjsGeom) -> tuple[str, str] | None:
     """Returns what depends on the shape of a geom, and what else cures that; None for nothing."""
-    body, option = f"body {quoted(geom.parent.name)}", spec.option
-    called = f"geom {quoted(geom.name)} of {body}" if geom.name else f"a geom of {body}"
+    body = f"body {quoted(geom.parent.name)}"
     if _gives_inertia(spec, geom):
         cure = "give this body an <inertial> with mass, pos and diaginertia"
         if geom.parent.explicitinertial:
             cure = 'write inertiafromgeom="auto" into <compiler>, so that the <inertial> counts'
         return f"the inertia of {body} is computed from it", cure
+    return acting_shape(spec, geom)
+
+
+def acting_shape(spec: mujoco.MjSpec, geom: mujoco.MjsGeom) -> tuple[str, str] | None:
+    """Returns what the shape of a geom may act on, and what cures that; None for nothing.
+
+    Its part of the inertia of its body does not count.
+    """
+    body, option = f"body {quoted(geom.parent.name)}", spec.option
+    called = f"geom {quoted(geom.name)} of {body}" if geom.name else f"a geom of {body}"
     touches = not option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
     if touches and (geom.contype or geom.conaffinity):
         cure = (

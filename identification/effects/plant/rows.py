@@ -33,6 +33,7 @@ from identification.effects.values import (
 from identification.errors import InputError, unknown_name
 from identification.logs.names import quoted
 from identification.model.hostile import refuse_endless, refuse_hostile, refuse_numbers
+from identification.model.looks import without_looks
 from identification.model.missing_files import compile_without_missing
 from identification.model.paths import Slot
 from identification.native.element import Term, refuse_unfit_functions
@@ -169,7 +170,9 @@ def read_told_model(source: str | Path) -> tuple[mujoco.MjSpec, str]:
 
 def with_rows(spec: mujoco.MjSpec, axes: Sequence[Axis], layout: JointLayout) -> mujoco.MjModel:
     """Returns the compiled model with a row of effects on some joints, all their numbers zero."""
-    bare, spec = spec.copy().compile(), spec.copy()
+    whole = spec.copy()
+    bare = whole.compile()
+    spec = without_looks(whole, bare).copy()
     joints = {joint.name: joint for joint in spec.joints if int(joint.type) in _HELD}
     for axis in axes:
         if axis.joint not in joints:

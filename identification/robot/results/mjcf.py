@@ -20,6 +20,7 @@ import numpy as np
 from identification.effects.effect import Effect
 from identification.effects.laws.bodies import BODY
 from identification.effects.laws.rotors import ROTOR
+from identification.model.looks import fix_inertia
 from identification.model.plant import start_place
 from identification.robot.robot import Robot
 from identification.storage.files import write_text
@@ -68,7 +69,7 @@ def write_mjcf(
             if field in ANGLES and spec.compiler.degree and base.jnt_type[thing.id] == _HINGE:
                 number = np.rad2deg(number)
             if kind == "bodies":
-                _explicit(thing, model, row)
+                fix_inertia(thing, model, row)
             else:
                 _put(thing, attribute, number)
     for name, most in (limits or {}).items():
@@ -86,14 +87,6 @@ def write_mjcf(
     root.insert(0, ElementTree.Comment(" ".join(said).replace("--", "- -")))
     ElementTree.indent(root)
     return write_text(path, ElementTree.tostring(root, encoding="unicode") + "\n")
-
-
-def _explicit(body: Any, model: mujoco.MjModel, row: int) -> None:
-    """Gives a body the mass and inertia of the compiled model, whatever its geoms say."""
-    body.explicitinertial = True
-    body.fullinertia[0] = np.nan
-    body.mass, body.ipos = float(model.body_mass[row]), model.body_ipos[row]
-    body.iquat, body.inertia = model.body_iquat[row], model.body_inertia[row]
 
 
 def _put(thing: Any, attribute: str, number: Any) -> None:
