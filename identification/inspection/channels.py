@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import mujoco
 
+from identification.logs.headers.column_words import Role, is_force, is_rate
 from identification.model.tied import follows
 
 _RATE = int(mujoco.mjtSensor.mjSENS_JOINTVEL)
@@ -59,3 +60,10 @@ def _joint(model: mujoco.MjModel, actuator: int) -> str:
     if int(model.actuator_trntype[actuator]) not in OF_JOINTS:
         return ""
     return str(model.joint(int(model.actuator_trnid[actuator, 0])).name)
+
+
+def may_be(channel: Channel, column: str, role: Role) -> bool:
+    """Returns whether a column may belong to a channel, as its name and its role tell."""
+    if channel.is_input:
+        return role != "output" and not (channel.follows == "position" and is_force(column))
+    return role != "input" and is_rate(column) == channel.is_rate
