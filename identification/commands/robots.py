@@ -150,7 +150,7 @@ class Torques(OnRobot):
         judged = replace(robot, file=replace(robot.file, trust=trust))
         for log in (robot.log, *robot.others, *robot.records):
             refuse_unbalanced(judged, log)
-        found = fit_torques(robot, self.output.tell)
+        found = fit_torques(judged, self.output.tell)
         files = found.files
         text = torque_text(files.record["verdict"], found.found)
         conclude_files(self, files, text, "comparison")

@@ -11,17 +11,20 @@ import numpy as np
 
 from identification.discovery.passes import refuse_unknown
 from identification.effects.plant.jointed import JointPlant
-from identification.errors import refuse_kind
+from identification.errors import InputError, refuse_kind
 from identification.logs.joined import refuse_different
 from identification.logs.log import Log
 from identification.model.protocol import with_numbers
+from identification.quantities import quantity
+from identification.refusals.columns import Doubt
 from identification.robot.results.results import TorqueFit
 from identification.robot.robot import Robot
 from identification.storage.written import Files
 from identification.torques.equations.bodies import read_numbers
 from identification.torques.equations.frictions import read_friction
 from identification.torques.equations.others import FreeNumber
-from identification.torques.evidence import find_evidence
+from identification.torques.evidence import Evidence, find_evidence
+from identification.torques.turned import find_turned
 
 FRICTIONS = (".damping", ".frictionloss")  # endings of paths
 STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
@@ -44,8 +47,8 @@ def fit_torques(
 
     Raises:
         InputError: `without` is no list of names of passes, a joint is neither hinge nor slide or
-            is not measured, bodies are tied in a loop, a drive has a state, a log is too short, or
-            two logs hold the same samples.
+            is not measured, bodies are tied in a loop, a drive has a state, a log is too short,
+            two logs hold the same samples, or the drives' forces have the other sign.
     """
     refuse_kind(robot, Robot, "fit_torques takes a robot (read_robot)")
     refuse_unknown(without)
@@ -59,7 +62,27 @@ def fit_torques(
         bodies=robot.plant.bodies, friction=_friction(robot, model), say=progress,
         without=without,
     )  # fmt: skip
+    if "wiring" not in robot.file.trust:
+        _refuse_turned(robot, evidence)
     return TorqueFit(robot, evidence, _files)
+
+
+def _refuse_turned(robot: Robot, evidence: Evidence) -> None:
+    """Refuse logs whose torques want the inertia of the model with the other sign."""
+    base, fit = evidence.base, evidence.whole.fit
+    r = len(base.names)
+    k = find_turned(base, fit.θ[:r], fit.std[:r])
+    if k is None:
+        return
+    unit, log = base.units[k], robot.log
+    doubt = Doubt.of(log, {n: robot.file.columns.get(n, n) for n in log.input_names})
+    raise InputError(
+        f"the drives' forces of log {log.name!r} have the other sign than those of"
+        f" {robot.file.model}: with them {base.names[k]} is"
+        f" {quantity(fit.θ[k], fit.std[k], unit=unit)} where the model has"
+        f" {quantity(base.values[k], unit=unit)}, and no inertia is negative;"
+        f' {doubt.how_to_turn(doubt.inputs)}, or write trust = ["wiring"] into {robot.file.path}'
+    )
 
 
 def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
