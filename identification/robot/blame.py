@@ -79,11 +79,24 @@ def _next_step(robot: Robot) -> str:
     logs = (robot.log, *robot.others, *robot.records)
     given = [said for log in logs for said in _factors(log, robot)]
     far = [far_sentence(robot.plant.model, log, file.columns) for log in logs]
-    where = " ".join([*(f"{said[:1].upper()}{said[1:]}." for said in far[:1] if said), where])
+    said = [*filter(None, (*far[:1], _turned(robot)))]
+    where = " ".join([*(f"{one[:1].upper()}{one[1:]}." for one in said), where])
     if not given:
         return where
     it = "it is" if len(given) == 1 else "they are"
     return f"First see whether {it} right: {'; '.join(given)}. {where}"
+
+
+def _turned(robot: Robot) -> str:
+    """Returns in words that all drives are turned, "" where torques do not tell it."""
+    if "wiring" in robot.file.trust:
+        return ""
+    from identification.robot.turned_drives import turned_drives  # slow to import
+
+    try:
+        return turned_drives(robot)
+    except InputError:
+        return ""
 
 
 def _factors(log: Log, robot: Robot) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -10,21 +9,18 @@ import mujoco
 import numpy as np
 
 from identification.discovery.passes import refuse_unknown
-from identification.effects.plant.jointed import JointPlant
 from identification.errors import InputError, refuse_kind
 from identification.logs.joined import refuse_different
 from identification.logs.log import Log
 from identification.model.protocol import with_numbers
-from identification.quantities import quantity
-from identification.refusals.columns import Doubt
 from identification.robot.results.results import TorqueFit
 from identification.robot.robot import Robot
+from identification.robot.turned_drives import plain, turned_drives, without_effects
 from identification.storage.written import Files
 from identification.torques.equations.bodies import read_numbers
 from identification.torques.equations.frictions import read_friction
 from identification.torques.equations.others import FreeNumber
-from identification.torques.evidence import Evidence, find_evidence
-from identification.torques.turned import find_turned
+from identification.torques.evidence import find_evidence
 
 FRICTIONS = (".damping", ".frictionloss")  # endings of paths
 STEP = 1e-3  # of a value, or of its scale where it is zero, by which it is moved
@@ -54,35 +50,17 @@ def fit_torques(
     refuse_unknown(without)
     logs = (robot.log, *robot.others, *robot.records)
     refuse_different(logs)
-    model = _without_effects(robot.plant)
-    own = [_without_effects(robot.plant_of(log)) if log.values else model for log in logs]
+    model = without_effects(robot.plant)
+    own = [without_effects(robot.plant_of(log)) if log.values else model for log in logs]
+    if "wiring" not in robot.file.trust and (turned := turned_drives(robot)):
+        raise InputError(turned)
     evidence = find_evidence(
         model, logs, own=own,
         confirm=len(robot.records), free=free_numbers(robot, logs), effects=robot.candidates,
         bodies=robot.plant.bodies, friction=_friction(robot, model), say=progress,
         without=without,
     )  # fmt: skip
-    if "wiring" not in robot.file.trust:
-        _refuse_turned(robot, evidence)
     return TorqueFit(robot, evidence, _files)
-
-
-def _refuse_turned(robot: Robot, evidence: Evidence) -> None:
-    """Refuse logs whose torques want the inertia of the model with the other sign."""
-    base, fit = evidence.base, evidence.whole.fit
-    r = len(base.names)
-    k = find_turned(base, fit.θ[:r], fit.std[:r])
-    if k is None:
-        return
-    unit, log = base.units[k], robot.log
-    doubt = Doubt.of(log, {n: robot.file.columns.get(n, n) for n in log.input_names})
-    raise InputError(
-        f"the drives' forces of log {log.name!r} have the other sign than those of"
-        f" {robot.file.model}: with them {base.names[k]} is"
-        f" {quantity(fit.θ[k], fit.std[k], unit=unit)} where the model has"
-        f" {quantity(base.values[k], unit=unit)}, and no inertia is negative;"
-        f' {doubt.how_to_turn(doubt.inputs)}, or write trust = ["wiring"] into {robot.file.path}'
-    )
 
 
 def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
@@ -117,7 +95,7 @@ def free_numbers(robot: Robot, logs: Sequence[Log]) -> tuple[FreeNumber, ...]:
         elif not differ and "/" in record.where and not record.where.endswith(FRICTIONS):
             moved = with_numbers(plant.model, numbers, 1)
             by = float(values[1, 0] - values[0, 0])
-            out.append(replace(number, moved=_plain(moved), step=by))
+            out.append(replace(number, moved=plain(moved), step=by))
     return tuple(out)
 
 
@@ -132,19 +110,6 @@ def _friction(robot: Robot, model: mujoco.MjModel) -> np.ndarray:
         for i, name in ((1, "coulomb_friction.f_c"), (2, "offset.f_0")):
             places = (name, f"{name}@{model.joint(int(j)).name}")
             out[3 * k + i] += sum(values.get(place, 0.0) for place in places)
-    return out
-
-
-def _without_effects(plant: JointPlant) -> mujoco.MjModel:
-    """Returns the model of a plant whose joints have no effects."""
-    return _plain(plant.without_states().model)
-
-
-def _plain(model: mujoco.MjModel) -> mujoco.MjModel:
-    """Returns a model whose joints have no effects: without their mark, the law leaves them."""
-    out = copy.copy(model)
-    if out.nuser_jnt:
-        out.jnt_user[:, -1] = 0.0
     return out
 
 

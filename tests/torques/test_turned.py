@@ -7,6 +7,8 @@ import pytest
 from torque_cases import planar_record, planar_robot
 
 from identification import InputError, fit_torques
+from identification.errors import DivergenceError
+from identification.robot.blame import told_of_factors
 from identification.torques.turned import find_turned, is_opposite
 
 
@@ -60,6 +62,8 @@ def test_an_arm_whose_drives_are_turned_is_refused_with_the_cure_and_a_word_over
         fit_torques(asked)
     assert "no inertia is negative" in str(refusal.value)
     assert 'trust = ["wiring"]' in str(refusal.value)
+    with pytest.raises(DivergenceError, match="have the other sign"), told_of_factors(asked):
+        raise DivergenceError("the simulation of a window diverged")
     assert fit_torques(robot).found.whole.fit.θ[0] < 0  # the file trusts the wiring
     right = planar_robot(tmp_path, log)
     fit_torques(replace(right, file=replace(right.file, trust=())))
