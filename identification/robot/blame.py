@@ -95,7 +95,7 @@ def _turned(robot: Robot) -> str:
 
     try:
         return turned_drives(robot)
-    except InputError:
+    except (InputError, np.linalg.LinAlgError):  # what diverged is told in any case
         return ""
 
 

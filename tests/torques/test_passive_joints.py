@@ -6,7 +6,7 @@ import pytest
 from plain_logs import model_log
 
 from identification import fit_torques, read_robot
-from identification.robot.torques import _plain
+from identification.robot.turned_drives import plain
 from identification.torques.equations.base import find_base
 from identification.torques.equations.equations import Equations, list_passive
 from identification.torques.equations.others import Others
@@ -70,7 +70,7 @@ def fitted(kind, log, factor=1.0):
     model = mujoco.MjModel.from_xml_string(robot_of(kind, **TRUE))
     model.body_mass *= factor
     model.body_inertia *= factor
-    measured = Equations.of(make_rows(_plain(model), [log]))
+    measured = Equations.of(make_rows(plain(model), [log]))
     base, others = find_base(model), Others.of((), measured, [log])
     equations = with_expected_motion(model, measured, base, others)
     return measured, equations, base, base_fit(model, equations, base, others)
