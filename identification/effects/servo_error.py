@@ -14,7 +14,6 @@ from collections.abc import Sequence
 
 import mujoco
 import numpy as np
-from scipy.signal import lfilter
 
 from identification.logs.log import Log
 from identification.model.predictor import output_columns
@@ -48,6 +47,8 @@ def commands_of(model: mujoco.MjModel, i: int, inputs: np.ndarray, h: float) -> 
     c = inputs[:, int(model.actuator_ctrladr[i])]
     if not is_filtered(model, i):
         return c
+    from scipy.signal import lfilter  # slow to import
+
     a = float(np.exp(-h / max(float(model.actuator_dynprm[i, 0]), 1e-9 * h)))
     u, _ = lfilter([0.0, 1 - a], [1.0, -a], c, zi=[c[0]])
     return np.asarray(u)
