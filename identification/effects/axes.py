@@ -251,11 +251,10 @@ def _pulled(model: mujoco.MjModel, log: Log, dof: int) -> float:
 
 def _plain(model: mujoco.MjModel, i: int) -> bool:
     """Returns whether the force of actuator i is gain·u + bias, u its input or that, filtered."""
-    is_early = is_filtered(model, i) and bool(model.actuator_actearly[i])
     biases = (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE)
+    is_direct = int(model.actuator_dyntype[i]) == int(mujoco.mjtDyn.mjDYN_NONE)
     return (
-        (int(model.actuator_dyntype[i]) == int(mujoco.mjtDyn.mjDYN_NONE) or is_filtered(model, i))
-        and not is_early
+        (is_direct or (is_filtered(model, i) and not model.actuator_actearly[i]))
         and int(model.actuator_gaintype[i]) == int(mujoco.mjtGain.mjGAIN_FIXED)
         and int(model.actuator_biastype[i]) in (int(b) for b in biases)
     )

@@ -55,7 +55,7 @@ _GAINPRM, _BIASPRM, _DYNPRM = "actuator_gainprm", "actuator_biasprm", "actuator_
 _BASE: Mapping[Entry, str] = {(_GAINPRM, 0): "resistance R", (_GAINPRM, 1): "motor constant K"}
 NAMES = ("kp", "kv", "timeconst", "resistance", "motorconst", "forcerange")
 _NAME = re.compile(rf"(?P<actuator>actuator/[^.]+)\.(?P<name>{'|'.join(NAMES)})")
-_DYNAMICS = {int(getattr(mujoco.mjtDyn, f"mjDYN_{d}")) for d in ("FILTER", "FILTEREXACT")}
+_FILTERS = {int(getattr(mujoco.mjtDyn, f"mjDYN_{d}")) for d in ("FILTER", "FILTEREXACT")}
 _FIXED, _AFFINE = int(mujoco.mjtGain.mjGAIN_FIXED), int(mujoco.mjtBias.mjBIAS_AFFINE)
 _AFFINE_GAIN, _NO_BIAS = int(mujoco.mjtGain.mjGAIN_AFFINE), int(mujoco.mjtBias.mjBIAS_NONE)
 _WANTS = {"position": 1, "velocity": 2}  # what a servo follows, and where its bias stands
@@ -143,7 +143,7 @@ def servo_kind(model: mujoco.MjModel, row: int) -> str | None:
 
 def is_filtered(model: mujoco.MjModel, row: int) -> bool:
     """Returns whether an actuator acts by what a filter of first order makes of its command."""
-    return int(model.actuator_dyntype[row]) in _DYNAMICS
+    return int(model.actuator_dyntype[row]) in _FILTERS
 
 
 def follows(model: mujoco.MjModel, row: int) -> str | None:

@@ -15,7 +15,7 @@ from identification.logs.log import Log
 from identification.model.protocol import with_numbers
 from identification.robot.results.results import TorqueFit
 from identification.robot.robot import Robot
-from identification.robot.turned_drives import plain, turned_drives, without_effects
+from identification.robot.turned_drives import bare_models, plain, turned_words
 from identification.storage.written import Files
 from identification.torques.equations.bodies import read_numbers
 from identification.torques.equations.frictions import read_friction
@@ -50,16 +50,16 @@ def fit_torques(
     refuse_unknown(without)
     logs = (robot.log, *robot.others, *robot.records)
     refuse_different(logs)
-    model = without_effects(robot.plant)
-    own = [without_effects(robot.plant_of(log)) if log.values else model for log in logs]
-    if "wiring" not in robot.file.trust and (turned := turned_drives(robot)):
-        raise InputError(turned)
+    model, own = bare_models(robot, logs)
     evidence = find_evidence(
         model, logs, own=own,
         confirm=len(robot.records), free=free_numbers(robot, logs), effects=robot.candidates,
         bodies=robot.plant.bodies, friction=_friction(robot, model), say=progress,
         without=without,
     )  # fmt: skip
+    is_asked = "wiring" not in robot.file.trust
+    if is_asked and (turned := turned_words(robot, evidence.base, evidence.whole.fit)):
+        raise InputError(turned)
     return TorqueFit(robot, evidence, _files)
 
 

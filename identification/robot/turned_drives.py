@@ -7,15 +7,17 @@ would be negative (`identification.torques.turned`).
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 
 import mujoco
 
 from identification.effects.plant.jointed import JointPlant
+from identification.logs.log import Log
 from identification.quantities import quantity
 from identification.refusals.columns import Doubt
 from identification.robot.robot import Robot
-from identification.torques.equations.base import find_base
-from identification.torques.equations.equations import Equations
+from identification.torques.equations.base import BaseParameters, find_base
+from identification.torques.equations.equations import Equations, Estimate
 from identification.torques.equations.others import Others
 from identification.torques.equations.rows import make_rows
 from identification.torques.passive import fit_base
@@ -25,8 +27,6 @@ from identification.torques.turned import find_turned
 def turned_drives(robot: Robot) -> str:
     """Returns in words that all drives have the other sign than the model gives them, or "".
 
-    The inertia that the torques of its logs want tells it, without a simulation.
-
     Args:
         robot: the result of `read_robot`.
 
@@ -34,10 +34,20 @@ def turned_drives(robot: Robot) -> str:
         InputError: torques say nothing of such a robot or log (`fit_torques`).
     """
     logs = (robot.log, *robot.others, *robot.records)
-    model = without_effects(robot.plant)
-    own = [without_effects(robot.plant_of(log)) if log.values else model for log in logs]
+    model, own = bare_models(robot, logs)
     measured, base = Equations.of(make_rows(model, logs, own)), find_base(model)
-    fit = fit_base(model, measured, base, Others.of((), measured, logs))[1].fit
+    fitted = fit_base(model, measured, base, Others.of((), measured, logs))[1]
+    return turned_words(robot, base, fitted.fit)
+
+
+def turned_words(robot: Robot, base: BaseParameters, fit: Estimate) -> str:
+    """Returns in words that a fit wants the inertia of the model with the other sign, or "".
+
+    Args:
+        robot: whose logs are fitted.
+        base: r combinations of its inertial numbers.
+        fit: begins with these.
+    """
     r = len(base.names)
     k = find_turned(base, fit.θ[:r], fit.std[:r])
     if k is None:
@@ -53,7 +63,13 @@ def turned_drives(robot: Robot) -> str:
     )
 
 
-def without_effects(plant: JointPlant) -> mujoco.MjModel:
+def bare_models(robot: Robot, logs: Sequence[Log]) -> tuple[mujoco.MjModel, list[mujoco.MjModel]]:
+    """Returns the model of a robot, and that of each log, whose joints have no effects."""
+    model = _without_effects(robot.plant)
+    return model, [_without_effects(robot.plant_of(log)) if log.values else model for log in logs]
+
+
+def _without_effects(plant: JointPlant) -> mujoco.MjModel:
     """Returns the model of a plant whose joints have no effects."""
     return plain(plant.without_states().model)
 

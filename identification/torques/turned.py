@@ -15,8 +15,10 @@ import numpy as np
 
 from identification.torques.equations.base import BaseParameters
 
-OPPOSITE = -0.7  # c below which numbers are those of the model with the other sign
-SURE = -6.0  # z below which this is no chance
+# c below which numbers are those of the model with the other sign. It is the cosine of 45 degrees:
+# nearer to these than to anything that has nothing to do with the model.
+OPPOSITE = -(0.5**0.5)
+SURE = -6.0  # z below which this is no chance: 1e-9 of a normal number
 MOMENT = "kg m"  # unit of what gravity acts on
 
 

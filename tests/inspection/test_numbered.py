@@ -56,9 +56,6 @@ def test_the_order_is_that_of_numbers_and_not_of_the_log_or_the_model():
         "j1": "q_10", "j2": "q_11", "j3": "q_12",
         **{f"j{k}_torque": "" for k in (1, 2, 3)},
     }  # fmt: skip
-    named = ["hip", "knee", "foot"]
-    got = columns(named, found("q_2", "q_0", "q_1"))
-    assert (got["hip"], got["knee"], got["foot"]) == ("q_0", "q_1", "q_2")
 
 
 def test_of_two_families_the_one_with_fewer_words_counts_and_of_equals_none():
@@ -82,3 +79,20 @@ def test_rates_are_no_positions_and_forces_no_setpoints():
 ])  # fmt: skip
 def test_a_family_with_a_gap_or_of_another_size_is_no_family_of_the_joints(names):
     assert numbered_matches(channels(["A1", "A2", "A3"])[3:], found(*names)) == ()
+
+
+@pytest.mark.parametrize("more", ["temp_{}", "x_{}", "status{}"])
+def test_numbered_columns_that_are_no_motion_and_no_force_are_nobodys(more):
+    others = numbered(more, 0, 2)
+    assert numbered_matches(channels(["A1", "A2"]), found(*others)) == ()
+    seen, told = numbered("joint{}_pos", 1, 2), numbered("joint{}_torque", 1, 2)
+    got = columns(["joint1", "joint2"], found(*others, *seen, *told))
+    assert [got[c] for c in ("joint1", "joint2")] == seen
+    assert [got[f"{c}_torque"] for c in ("joint1", "joint2")] == told
+
+
+def test_names_of_joints_tell_more_than_numbers():
+    log = found("q_0", "q_1", "knee_pos", "hip_pos", "tau_0", "tau_1", "hip_tau", "knee_tau")
+    got = columns(["hip", "knee"], log)
+    assert (got["hip"], got["knee"]) == ("hip_pos", "knee_pos")
+    assert (got["hip_torque"], got["knee_torque"]) == ("hip_tau", "knee_tau")
